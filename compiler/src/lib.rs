@@ -40,7 +40,7 @@ pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use kinks::{Kinks, is_kink, side_of, without_kinks};
 pub use lower::{Expected, LoweredProblem};
-pub use model::{Model, Phase, Switch};
+pub use model::{Along, Model, Phase, Switch};
 pub use phases::{
     Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Sequences, Slopes,
     between_jumps, crossings, ends_at, hamiltonian, is_uncontrolled, limits, may_hold, sequences,

@@ -22,6 +22,7 @@ mod executor;
 mod expectations;
 mod gradient;
 pub mod language;
+mod measured;
 mod model;
 pub mod names;
 mod plant;

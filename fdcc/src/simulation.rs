@@ -1,6 +1,7 @@
 //! The true system, integrated from event to event.
 
 use crate::error::Error;
+use crate::measured::add_objective;
 use crate::model::Model;
 use fdcc_runtime::simulate::{
     self, Controls, Event, Options as Accuracy, Status, System, simulate,
@@ -29,8 +30,9 @@ pub struct Simulation {
 
 impl Simulation {
     /// Simulates; `system` is the one of [`Model::system`].
-    pub fn new(system: System, controls: &Controls, accuracy: &Accuracy) -> Self {
-        let result = simulate(&system, controls, accuracy);
+    pub fn new(model: &Model, system: System, controls: &Controls, accuracy: &Accuracy) -> Self {
+        let mut result = simulate(&system, controls, accuracy);
+        add_objective(model.meaning(), &system, controls, accuracy, &mut result);
         Simulation { system, result }
     }
 
@@ -64,6 +66,6 @@ impl Model {
     ///
     /// A model that cannot be simulated.
     pub fn simulate(&self, controls: &Controls, accuracy: &Accuracy) -> Result<Simulation, Error> {
-        Ok(Simulation::new(self.system()?, controls, accuracy))
+        Ok(Simulation::new(self, self.system()?, controls, accuracy))
     }
 }

@@ -245,7 +245,7 @@ impl Model {
             let system = model.system()?;
             fits(&accuracy, system.interval)?;
             let controls = driven.controls(system.interval);
-            Ok(fdcc::Simulation::new(system, &controls, &accuracy))
+            Ok(fdcc::Simulation::new(&model, system, &controls, &accuracy))
         });
         watch.raised_but_interrupt(py)?;
         let simulation = simulated.map_err(|error| self.raised(py, error))?;

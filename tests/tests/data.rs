@@ -225,8 +225,8 @@ fn the_optimum_depends_on_parameters_of_the_rows() {
     }
 }
 
-/// Fits that wait: for jumps with measured data, and for what a chain of phases is expected to be.
-const WAITING: [&str; 3] = ["bounces", "bouncing_ball", "two_runs"];
+/// Fits that wait for what a chain of phases is expected to be.
+const WAITING: [&str; 2] = ["bounces", "two_runs"];
 
 /// Published fits, and those that a script of `tests/peers/` makes and solves elsewhere, have the
 /// answers that stand in their `expect` blocks.

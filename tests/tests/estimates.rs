@@ -320,7 +320,8 @@ fn the_truth_is_within_three_standard_errors() {
 }
 
 /// Every mistake that a fit alone can have, with its code and the beginning of its message.
-const MISTAKES: [(&str, &str, &str); 9] = [
+const MISTAKES: [(&str, &str, &str); 10] = [
+    ("fit obs: x sd 1, x sd 1", "FDC0102", "`x` is fitted twice"),
     ("fit obs: x sd -1", "FDC0109", "a standard deviation is above 0"),
     ("fit obs: q sd 1", "FDC0110", "`obs` has no column `q`"),
     ("fit obs: x + 1 sd 1", "FDC0110", "in which column of `obs` is `x + 1`?"),
@@ -349,14 +350,20 @@ fn mistakes_in_a_fit_are_told() {
     }
 }
 
-/// A fit is solved, so what is refused is told of the commands that refuse it.
+/// A simulation has the sum of the squares of what remains with the guess of the unknowns; its
+/// gradient is refused, and that is told of the command that refuses it.
 #[test]
-fn a_fit_is_not_simulated_yet() {
-    let files = DataFiles::from(|_| Ok(points()));
-    let checked =
-        fdcc::check_with("a test", format!("{LINE}fit obs: x sd 1").into_bytes(), Some(files));
-    let system = checked.model.expect("it has a meaning").system();
-    let Err(fdcc::Error::Model(refused)) = system else { panic!("it is refused") };
-    assert!(refused[0].message.contains("simulated"), "{refused:#?}");
+fn a_fit_is_simulated_and_not_differentiated_yet() {
+    let files = DataFiles::from(|_| Ok("t,x\n0,0.5\n1,2\n2,1\n".to_owned()));
+    let text = "data obs = csv(\"a.csv\") columns t, x\nfree p in [0, 9] guess 1.5\n\
+                time t in [0, 2]\nstate x start 0\ndynamics { x' = p }\nfit obs: x sd 2";
+    let model = fdcc::check_with("a test", text.into(), Some(files)).model.expect("it is right");
+    let simulation = model.simulate(&fdcc::Controls::Guess, &fdcc::Accuracy::default());
+    let objective = simulation.expect("it can be simulated").result.objective;
+    let squares = 0.25 * (0.25 + 0.25 + 4.0);
+    assert!((objective.expect("it has one") - squares).abs() < 1e-12, "{objective:?}");
+    let gradient = fdcc_compiler::compile_sensitivities(model.meaning());
+    let Err(refused) = gradient else { panic!("it is refused") };
+    assert!(refused[0].message.contains("differentiated"), "{refused:#?}");
     assert!(refused[0].labels[0].text.starts_with("understood by `solve`"), "{refused:#?}");
 }

@@ -111,6 +111,21 @@ fn all() -> Vec<OnKink> {
             objective: 10.0 * 1.3025 * 1.3025 / 21.0,
             is_global: false,
         },
+        // As far as a disc allows, from the middle of it: lengths have no derivative there.
+        OnKink {
+            text: "time t in [0, 1]  state x start 0  state y start 0  control u(a, b)
+                dynamics { x' = u.a  y' = u.b }  path norm(u) <= 1
+                maximize x(end) + y(end) - 0.01*integral(normsq(u))",
+            objective: std::f64::consts::SQRT_2 - 0.01,
+            is_global: false,
+        },
+        // The nearest point of a disc: (0.5, 0).
+        OnKink {
+            text: "param r = 0.5  time t in [0, 1]  state p(x, y) start (1, 0)  control u(x, y)
+                dynamics { p' = u }  end norm(p) <= r  minimize integral(normsq(u))",
+            objective: 0.25,
+            is_global: false,
+        },
         // The nearest point of a square: (0.5, 0).
         OnKink {
             text: "time t in [0, 1]  state x start 1  state y start 0.2  control u(a, b)

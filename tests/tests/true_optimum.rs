@@ -17,6 +17,7 @@ const CERTIFIED: &[&str] = &[
     "models/coulomb_rest",
     "models/coulomb_reverse",
     "models/puck",
+    "models/slider_fit",
     "models/stacked",
     "models/turbo",
     "right/dc_motor",
@@ -200,6 +201,7 @@ fn a_hold_says_what_is_zero_in_the_end() {
             shape: ControlShape::Polynomial,
             halvings: 0,
             is_graded: false,
+            is_cut: false,
         };
         let phases = [phase([Mode::Above; 2]), phase(modes)];
         let chain = with_modes(model.meaning(), &phases).expect("it can be divided");

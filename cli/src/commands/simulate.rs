@@ -59,7 +59,7 @@ impl Simulate {
                 "`--times`: {outside} is not between {first} and {last}"
             )));
         }
-        let simulation = Simulation::new(system, &controls, &options);
+        let simulation = Simulation::new(&model, system, &controls, &options);
         let exit = if simulation.is_complete() { Exit::Fine } else { Exit::NotSolved };
         Ok((SimulationDocument::new(&simulation, &model), exit))
     }

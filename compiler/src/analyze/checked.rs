@@ -78,6 +78,7 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
     sort(&mut whole.not_yet);
     let model = (!diagnostics.iter().any(is_fatal)).then(|| {
         let mut model = whole.into_model();
+        model.durations_as_conditions();
         model.name = tree.name.as_ref().map_or("model", |name| &name.name).into();
         model.take_units(&units, &phases);
         model

@@ -84,9 +84,13 @@ fn by_parameters_like(model: &Model, alike: &mut Alike) -> Result<ByParameters, 
     Ok(ByParameters { parameters, unknowns, dynamics, path, boundary, measurements, given })
 }
 
-/// Turns a model into the true system, for simulation; or says what cannot be simulated yet.
+/// Turns a model into the true system, for simulation; or says what cannot be simulated yet. An
+/// objective that reads sums over rows is left out.
 pub fn compile_simulation(model: &Model) -> Result<System, Vec<Diagnostic>> {
-    compile_system(model, Purpose::Simulation)
+    match model.objective_reads_sums() {
+        true => compile_system(&Model { objective: None, ..model.clone() }, Purpose::Simulation),
+        false => compile_system(model, Purpose::Simulation),
+    }
 }
 
 /// The true system with all its derivatives, to the second order, for sensitivities.
@@ -105,8 +109,8 @@ pub fn compile_smoothed(model: &Model) -> Result<System, Vec<Diagnostic>> {
 
 fn compile_system(model: &Model, purpose: Purpose) -> Result<System, Vec<Diagnostic>> {
     not_yet(model)?;
-    if let Some(sum) = model.sums.first() {
-        return Err(vec![model::not_simulated_yet(sum.place.span, "a sum over rows")]);
+    if let Some(sum) = model.sums.first().filter(|_| model.objective_reads_sums()) {
+        return Err(vec![model::not_simulated_yet(sum.place.span)]);
     }
     let numbers = known(model)?;
     let (graph, lowered) = lower::simulation(model, purpose);

@@ -72,7 +72,14 @@ fn field(text: &str) -> &str {
 
 fn by_name(header: &Line, names: &[&str]) -> Result<Vec<usize>, Misfit> {
     let place = |(at, name): (usize, &&str)| {
-        header.fields.iter().position(|field| field == name).ok_or_else(|| {
+        let mut places = (0..header.fields.len()).filter(|it| header.fields[*it] == *name);
+        let place = places.next();
+        if places.next().is_some() {
+            let message = format!("there are two columns `{name}`");
+            let help = "which one is meant? give the other one another name in the file";
+            return Err(Misfit::new(Some(at), message, help));
+        }
+        place.ok_or_else(|| {
             let message = format!("there is no column `{name}`");
             let there = format!("its columns are `{}`", header.fields.join("`, `"));
             let help = match closest(name, header.fields.iter().copied()) {
@@ -120,12 +127,16 @@ fn no_number(line: usize, (at, name): (usize, &str), text: &str) -> Misfit {
         "" => "nothing stands".into(),
         _ => format!("`{text}` stands"),
     };
-    Misfit::new(
-        Some(at),
-        format!("line {line}: {what} where `{name}` needs a finite number"),
-        "for what was not measured write any number and give it the weight 0, in a column of \
-         weights: `k.w*(x(k.t) - k.x)^2`",
-    )
+    let is_with_comma = text.replacen(',', ".", 1).parse::<f64>().is_ok();
+    let help = match is_with_comma && text.contains(',') {
+        true => "numbers have a decimal point: `1.5`, not `1,5`",
+        false => {
+            "for what was not measured write any number and give it the weight 0, in a column of \
+             weights: `k.w*(x(k.t) - k.x)^2`"
+        }
+    };
+    let message = format!("line {line}: {what} where `{name}` needs a finite number");
+    Misfit::new(Some(at), message, help)
 }
 
 #[cfg(test)]
@@ -156,6 +167,7 @@ mod tests {
             ("", "empty"),
             ("t,x\n", "no rows"),
             ("t,y\n0,1", "no column `x`"),
+            ("t,x,x\n0,1,2", "there are two columns `x`"),
             ("0,1,2", "3 columns without names"),
             ("t,x\n0,1\n1", "line 3 has 1 fields"),
             ("t,x\n0,1\n\n1,nan", "line 4: `nan` stands where `x`"),

@@ -25,7 +25,8 @@ mod sides;
 
 use crate::expressions::blend::sides;
 use crate::expressions::graph::builtins::Builtin;
-use crate::expressions::graph::{ExprId, Graph};
+use crate::expressions::graph::{ExprId, Graph, evaluate};
+use crate::model::numbers::numbers;
 use crate::model::phases::Symbols;
 use crate::model::{Constraint, Control, Free, Integral, Model, Place, Range, Surface, Symbol};
 use bent::Bent;
@@ -234,11 +235,20 @@ impl Without<'_> {
 
     /// Puts sides in the place of conditions with kinks; whether there are any.
     fn divide_conditions(&mut self) -> bool {
+        let inputs = numbers(&self.own).map_or(Vec::new(), |it| it.inputs().to_vec());
+        let number = |graph: &Graph, id| match inputs.is_empty() {
+            true => f64::NAN,
+            false => evaluate(graph, &[id], &inputs, &[])[0],
+        };
         let (symbols, graph) = (self.own.symbols.len(), &mut self.own.graph);
         let mut is_any = false;
         for rows in [&mut self.own.path, &mut self.own.boundary] {
             let mut others = Vec::new();
             for row in rows.iter_mut() {
+                if let Some(value) = sides::length(graph, row, &number) {
+                    (row.value, is_any) = (value, true);
+                    continue;
+                }
                 let Some(values) = sides::sides(graph, symbols, row) else { continue };
                 is_any = true;
                 let name = format!("{NAME}{SIDE}{}", row.place.name);

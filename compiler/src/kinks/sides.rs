@@ -3,14 +3,36 @@
 //! A kink is the larger of its sides, or the smaller. Where a condition grows with the larger and
 //! has no lower bound, it holds if it holds with both; so it does where it falls with the smaller,
 //! and the other way round for lower bounds.
+//!
+//! A length has a kink at 0: `sqrt(s) <= c` is `(s/c + c)/2 <= c`, whose value and slope are the
+//! same where it holds as an equality.
 
 use super::bent::{Tried, replaced};
+use crate::expressions::graph::builtins::{Builtin, is_sum_of_squares};
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::Constraint;
+use crate::model::{Constraint, Range};
 
 /// Conditions with more kinks are left as they are.
 const MOST: usize = 4;
+
+/// What is bounded in place of a length with an upper bound above 0 and no lower one; nothing where
+/// it is none. `number` is the value of what is known beforehand.
+pub(super) fn length(
+    graph: &mut Graph,
+    row: &Constraint,
+    number: &dyn Fn(&Graph, ExprId) -> f64,
+) -> Option<ExprId> {
+    let Range { lower, upper } = row.range;
+    let &[square] = graph.as_call(row.value, Builtin::Sqrt)? else { return None };
+    let is_length = is_sum_of_squares(graph, square) && number(graph, lower) <= 0.0;
+    let bound = number(graph, upper);
+    (is_length && bound > 0.0 && bound.is_finite()).then(|| {
+        let part = graph.div(square, upper);
+        let twice = graph.add(part, upper);
+        graph.scale(0.5, twice)
+    })
+}
 
 /// What is bounded in place of the value of a condition, the first of these with all kinks above;
 /// nothing where it has no kinks, or not of this kind. `symbols` inputs have a meaning.

@@ -75,8 +75,9 @@ fn start(model: &Model, graph: &mut Graph, index: usize, state: &State) -> Optio
     }
 }
 
-/// All rows of a sum are within the time: the model has states nowhere else.
-fn within_time(model: &Model, graph: &mut Graph, sum: &Sum) -> [Condition; 2] {
+/// All rows of a sum are within the time: the model has states nowhere else. Those that belong to
+/// other phases are within the time of these.
+fn within_time(model: &Model, graph: &mut Graph, sum: &Sum) -> Vec<Condition> {
     let [zero, infinity] = [0.0, f64::INFINITY].map(|it| graph.number(it));
     let times = row_times(model, graph, sum);
     let [first, last] = model.interval;
@@ -92,7 +93,9 @@ fn within_time(model: &Model, graph: &mut Graph, sum: &Sum) -> [Condition; 2] {
         range: Range { lower: zero, upper: infinity },
     };
     let [before, behind] = [graph.sub(earliest, first), graph.sub(last, latest)];
-    [condition("first", before), condition("last", behind)]
+    let all = [condition("first", before), condition("last", behind)].into_iter();
+    let own = all.zip(sum.is_shared).filter(|it| !it.1).map(|it| it.0);
+    own.filter(|it| graph.as_number(it.value).is_none()).collect()
 }
 
 /// The time of each row, over parameters.

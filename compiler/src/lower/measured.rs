@@ -103,6 +103,7 @@ impl Measured {
             function: Arc::clone(function),
             interpolant: self.interpolant,
             state: self.state,
+            is_shared: sum.is_shared,
         }
     }
 }
@@ -147,8 +148,8 @@ impl<'m> Row<'m> {
         };
         inputs.set(self.model, |symbol| match symbol {
             Symbol::Time => Some(time),
-            Symbol::State(at) => Some(states[at]),
-            Symbol::Control(at) => Some(controls[at]),
+            Symbol::State(at) => states.get(at).copied(),
+            Symbol::Control(at) => controls.get(at).copied(),
             _ => None,
         });
         let outputs = inputs.apply(self.graph, &[value]);

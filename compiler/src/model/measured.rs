@@ -3,6 +3,7 @@
 use super::numbers::Numbers;
 use super::{Model, Place, Symbol};
 use crate::data::Table;
+use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph, evaluate};
 use crate::syntax::text;
 use fdcc_grammar::{Code, Diagnostic, Severity};
@@ -21,6 +22,8 @@ pub struct Sum {
     pub term: ExprId,
     /// Whether it is that of a signal of a `fit`, whose standard deviations are known.
     pub is_fit: bool,
+    /// Whether rows before the time of the model and rows behind it belong to other phases.
+    pub is_shared: [bool; 2],
 }
 
 /// So much beyond an end is rounding, of the times that are looked at.
@@ -54,6 +57,30 @@ impl Model {
     pub(crate) fn row_times(&self, numbers: &Numbers, sum: &Sum) -> Vec<f64> {
         let table = (sum.table, &self.tables[sum.table]);
         by_row(&self.graph, &self.symbols, table, sum.time, numbers.inputs().to_vec())
+    }
+
+    /// Whether the objective is one of measured data.
+    pub fn objective_reads_sums(&self) -> bool {
+        let objective = self.objective.iter().map(|it| it.1);
+        let read = objective.flat_map(|it| self.graph.inputs_of(&[it]));
+        read.map(|at| self.symbols[at as usize]).any(|it| matches!(it, Symbol::Sum(_)))
+    }
+
+    /// Whether each sum over rows is a term of the objective, with a factor that is given, and of
+    /// nothing else: then each phase of the model has its own part of it.
+    pub fn are_sums_terms(&self) -> bool {
+        let mut graph = self.graph.clone();
+        let is_sum = |at: &u32| matches!(self.symbols[*at as usize], Symbol::Sum(_));
+        let is_param = |at: u32| matches!(self.symbols[at as usize], Symbol::Param(_));
+        let rows: Vec<ExprId> = self.boundary.iter().map(|row| row.value).collect();
+        let mut is_given = |input: u32, value: ExprId| {
+            let factor = derivative(&mut graph, value, input);
+            graph.inputs_of(&[factor]).into_iter().all(is_param)
+        };
+        let read = |value: &[ExprId]| self.graph.inputs_of(value).into_iter().filter(is_sum);
+        let objective = self.objective.iter().map(|it| it.1);
+        read(&rows).next().is_none()
+            && objective.into_iter().all(|it| read(&[it]).all(|input| is_given(input, it)))
     }
 
     /// Whether the optimiser chooses the first or the last time.

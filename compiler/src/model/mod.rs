@@ -5,10 +5,14 @@
 //! lowering gives them the places that compiled functions want. Bounds and parameters stay
 //! expressions, so that the command line can change a number.
 
+mod along;
 mod at_times;
 mod declarations;
+mod duration;
+mod ends;
 mod expected;
 pub(crate) mod guess;
+mod knots;
 mod measured;
 pub(crate) mod numbers;
 mod overrides;
@@ -16,6 +20,7 @@ pub(crate) mod phases;
 mod switches;
 mod unsolved;
 
+pub use along::Along;
 pub(crate) use at_times::{Instant, between_times};
 pub use declarations::{
     AtTime, Ball, Constraint, Control, Definition, Free, Integral, Jump, Param, Place, Range,
@@ -234,9 +239,9 @@ pub(crate) fn not_yet(span: Span, what: &str) -> Diagnostic {
     Diagnostic::new(Code::NotYet, message, span, "understood by `check`, not yet by `solve`")
 }
 
-/// "This is solved but cannot be simulated yet."
-pub(crate) fn not_simulated_yet(span: Span, what: &str) -> Diagnostic {
-    let message = format!("{what} cannot be simulated yet");
-    let label = "understood by `solve`, not yet by `simulate`, `grad` and `verify`";
+/// "This is solved but cannot be differentiated along a simulation yet."
+pub(crate) fn not_simulated_yet(span: Span) -> Diagnostic {
+    let message = "a sum over rows cannot be differentiated along a simulation yet";
+    let label = "understood by `solve`, not yet by `grad`";
     Diagnostic::new(Code::NotYet, message, span, label)
 }

@@ -12,10 +12,12 @@ impl Model {
         Some(not_yet(jump.place.span, "a jump within a phase"))
     }
 
-    /// Measured data beside jumps: a row may be in any of the phases between them.
+    /// Measured data beside jumps, of which the objective is no sum: a row may be in any of the
+    /// phases between them.
     pub(crate) fn rows_beside_jumps(&self) -> Option<Diagnostic> {
         let (Some(_), Some(sum)) = (self.jumps.first(), self.sums.first()) else { return None };
-        Some(not_yet(sum.place.span, "a sum over rows in a model with jumps"))
+        let what = "a function of a sum over rows in a model with jumps";
+        (!self.are_sums_terms()).then(|| not_yet(sum.place.span, what))
     }
 
     /// A jump that reads the side of a surface, which a simulation knows and a problem does not.

@@ -2,7 +2,7 @@
 
 use super::shares::Shares;
 use crate::expressions::graph::{ExprId, Graph};
-use crate::model::{Constraint, Free, Link, Model, Phase, Place, Range, Symbol};
+use crate::model::{Constraint, Free, Link, Model, Phase, Place, Range, Sum, Symbol};
 use fdcc_runtime::problem::End;
 
 /// Phases that are called by the model and their number.
@@ -74,6 +74,12 @@ impl<'m> Division<'m> {
     /// The number of the last phase.
     pub fn last(&self) -> usize {
         self.times.len() - 2
+    }
+
+    /// The sums over rows: those before and behind the time of a phase belong to its neighbours.
+    pub fn sums(&self, j: usize) -> Vec<Sum> {
+        let is_shared = [j > 0, j < self.last()];
+        self.model.sums.iter().map(|sum| Sum { is_shared, ..sum.clone() }).collect()
     }
 
     pub fn input_of_state(&self, state: usize) -> u32 {

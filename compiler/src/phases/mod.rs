@@ -190,6 +190,7 @@ impl<'m> MultiPhase<'m> {
             boundary: Vec::new(),
             objective: place.zip(value),
             integrals,
+            sums: self.division.sums(j),
             ..model.clone()
         }
     }

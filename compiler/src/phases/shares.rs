@@ -1,7 +1,8 @@
 //! The objective of the whole time: which part of it belongs to which phase.
 //!
-//! An integral is the sum of those of all phases. Where its factor in the objective depends on
-//! parameters alone, each phase has its own part; otherwise links need the value at the ends.
+//! An integral is the sum of those of all phases, and so is a sum over rows of measured data. Where
+//! its factor in the objective depends on parameters alone, each phase has its own part; otherwise
+//! links need the value at the ends.
 
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
@@ -39,12 +40,11 @@ impl Shares {
 
     fn split(&mut self, model: &Model, graph: &mut Graph, value: ExprId) {
         let (mut terms, mut apart) = (Vec::new(), Vec::new());
-        for at in integrals(model, graph, &[value]) {
-            let input = model.input_of(Symbol::Integral(at)).expect("it is read");
+        for input in over_time(model, graph, value) {
             let factor = derivative(graph, value, input);
             if is_given(model, graph, factor) {
-                let integral = graph.input(input);
-                terms.push(graph.mul(factor, integral));
+                let part = graph.input(input);
+                terms.push(graph.mul(factor, part));
                 apart.push(input);
             }
         }
@@ -73,6 +73,13 @@ impl Shares {
         let own: Vec<ExprId> = own.into_iter().flatten().collect();
         (!own.is_empty()).then(|| graph.sum(&own))
     }
+}
+
+/// The inputs of an expression that are integrals or sums over rows.
+fn over_time(model: &Model, graph: &Graph, value: ExprId) -> Vec<u32> {
+    let mut inputs = graph.inputs_of(&[value]);
+    inputs.retain(|at| matches!(model.symbols[*at as usize], Symbol::Integral(_) | Symbol::Sum(_)));
+    inputs
 }
 
 /// The integrals that some expressions read.

@@ -13,7 +13,7 @@
 //! the unknowns within their errors; a bound that is active holds its unknown. (Bard, Nonlinear
 //! parameter estimation, 1974, chapter 7.)
 
-use crate::Solution;
+use crate::{Phases, Solution};
 use fdcc_compiler::{Model, residuals};
 use fdcc_runtime::nlp::Covariance;
 use fdcc_runtime::problem::{Chain, Problem};
@@ -152,21 +152,28 @@ impl Solution {
 
     /// What remains of all signals, and whether their standard deviations are known.
     fn residuals(&self) -> (Vec<Residual>, bool) {
-        let phases = match self.in_phases() {
-            Some((model, chain, outcome)) if !model.phases.is_empty() => {
-                model.phases.iter().zip(&chain.phases).zip(&outcome.phases)
-            }
-            _ => return of_phase(self.model().meaning(), &self.problem, &self.outcome, None),
-        };
-        let is_written = !self.phases().is_empty();
+        if self.phases().is_empty() {
+            return self.residuals_over_time(None);
+        }
         let (mut all, mut is_known) = (Vec::new(), true);
-        for ((phase, problem), outcome) in phases {
-            let name = is_written.then_some(phase.place.name.as_str());
-            let (own, known) = of_phase(&phase.model, problem, outcome, name);
+        for (phase, part) in self.model().meaning().phases.iter().zip(self.phases()) {
+            let (own, known) = part.residuals_over_time(Some(&phase.place.name));
             all.extend(own);
             is_known &= known;
         }
         (all, is_known)
+    }
+
+    /// Those of one phase of the model. Where switches divide its time each part of it has the same
+    /// signals.
+    fn residuals_over_time(&self, phase: Option<&str>) -> (Vec<Residual>, bool) {
+        let parts = self.between_jumps.as_ref().filter(|it| !it.model.phases.is_empty());
+        let Some(Phases { model, chain, outcome }) = parts else {
+            return of_phase(self.model().meaning(), &self.problem, &self.outcome, phase);
+        };
+        let parts = model.phases.iter().zip(&chain.phases).zip(&outcome.phases);
+        let parts = parts.map(|((it, problem), own)| of_phase(&it.model, problem, own, phase));
+        parts.reduce(followed).unwrap_or_default()
     }
 
     fn with_chain<T>(&self, act: impl FnOnce(&Chain, &ChainOutcome) -> T) -> T {
@@ -178,6 +185,19 @@ impl Solution {
             }
         }
     }
+}
+
+/// Rows of each signal in one part of time, and in the next.
+fn followed(
+    (mut first, is_known): (Vec<Residual>, bool),
+    next: (Vec<Residual>, bool),
+) -> (Vec<Residual>, bool) {
+    for (own, more) in first.iter_mut().zip(next.0) {
+        own.time.extend(more.time);
+        own.values.extend(more.values);
+        own.is_measured.extend(more.is_measured);
+    }
+    (first, is_known && next.1)
 }
 
 /// Standard errors for residuals in standard deviations; none of what is not determined.
@@ -199,9 +219,11 @@ fn correlations(known: &Covariance, errors: &[Option<f64>]) -> Vec<Vec<f64>> {
     all.clone().map(|a| all.clone().map(|b| entry(a, b)).collect()).collect()
 }
 
-/// The names of what is not determined, direction by direction.
+/// The names of what is not determined, direction by direction; times of switches have none.
 fn undetermined(known: &Covariance, unknowns: &[(&str, f64)]) -> Vec<Vec<String>> {
     let mut all = known.undetermined.clone();
+    all.iter_mut().for_each(|it| it.retain(|at| *at < unknowns.len()));
+    all.retain(|it| !it.is_empty());
     all.sort();
     let named = |it: &Vec<usize>| it.iter().map(|at| unknowns[*at].0.to_owned()).collect();
     all.iter().map(named).collect()
@@ -218,13 +240,18 @@ fn of_phase(
     let is_known = all.iter().all(|it| it.is_fit);
     let rows: Vec<_> = all.iter().map(|it| &it.rows).collect();
     let terms = terms_of_rows(problem, &outcome.solution, &outcome.trajectory.parameters, &rows);
+    // Outside of all phases a signal is written with its phase.
+    let own = |name: &str| -> String {
+        let behind = phase.and_then(|phase| name.strip_prefix(phase)?.strip_prefix('.'));
+        behind.unwrap_or(name).to_owned()
+    };
     let of_signal = all.iter().zip(terms).map(|(it, terms)| Residual {
         phase: phase.map(str::to_owned),
-        name: it.name.clone(),
+        name: own(&it.name),
         data: it.data.clone(),
-        time: it.rows.times.clone(),
-        values: terms.iter().zip(&it.weights).map(|(term, weight)| term * weight).collect(),
-        is_measured: it.weights.iter().map(|weight| *weight > 0.0).collect(),
+        time: terms.iter().map(|(row, _)| it.rows.times[*row]).collect(),
+        values: terms.iter().map(|(row, term)| term * it.weights[*row]).collect(),
+        is_measured: terms.iter().map(|(row, _)| it.weights[*row] > 0.0).collect(),
     });
     (of_signal.collect(), is_known)
 }

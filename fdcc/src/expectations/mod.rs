@@ -97,17 +97,9 @@ fn evaluate(solution: &Solution) -> Vec<Expectation> {
         None => trajectory.parameters.clone(),
     };
     parameters.extend(match between {
-        Some(phases) => integrals_of_phases(phases),
-        None => of_phase(&solution.problem, &solution.outcome, &*expectations.integrands),
+        Some(phases) => over_phases(phases),
+        None => over_time(&solution.problem, &solution.outcome, &expectations),
     });
-    if between.is_none() {
-        parameters.extend(sums_over_rows(
-            &solution.problem,
-            &solution.outcome.solution,
-            &trajectory.parameters,
-            &expectations.sums,
-        ));
-    }
     let replayed = Replayed::new(solution, &expectations.simulated);
     parameters.extend(replayed.values());
     let mut values = Columns::new(expectations.function.outputs(), 1);
@@ -125,17 +117,28 @@ pub(super) fn of_phase(
     integrals(problem, &outcome.solution, &outcome.trajectory.parameters, integrands)
 }
 
-/// The same over that of all phases between jumps.
-fn integrals_of_phases(phases: &Phases) -> Vec<f64> {
+/// The integrals, then the sums over rows.
+fn over_time(
+    problem: &Problem,
+    outcome: &Outcome,
+    expectations: &fdcc_compiler::Expectations,
+) -> Vec<f64> {
+    let (known, sums) = (&outcome.trajectory.parameters, &expectations.sums);
+    let mut all = of_phase(problem, outcome, &*expectations.integrands);
+    all.extend(sums_over_rows(problem, &outcome.solution, known, sums));
+    all
+}
+
+/// The same over all phases between jumps.
+fn over_phases(phases: &Phases) -> Vec<f64> {
     let Phases { model, chain, outcome } = phases;
     let models: Vec<&Model> = match &model.phases[..] {
         [] => vec![model],
         own => own.iter().map(|phase| &phase.model).collect(),
     };
     let own = models.into_iter().zip(&chain.phases).zip(&outcome.phases);
-    let own = own.map(|((model, problem), outcome)| {
-        of_phase(problem, outcome, &*expectations(model).integrands)
-    });
+    let own =
+        own.map(|((model, problem), outcome)| over_time(problem, outcome, &expectations(model)));
     let add = |sum: Vec<f64>, more: Vec<f64>| sum.iter().zip(more).map(|(a, b)| a + b).collect();
     own.reduce(add).unwrap_or_default()
 }

@@ -3,7 +3,7 @@
 use super::Solution;
 use super::timing::gap_of_a_moment;
 use super::true_optimum::certificate_limits::{
-    CONTACT, GAIN, HAMILTONIAN, MODES, REPLAYED, STATIONARY, TIMING, WORTH, WRONG_SIGN,
+    CONTACT, GAIN, HAMILTONIAN, MEASURED, MODES, REPLAYED, STATIONARY, TIMING, WORTH, WRONG_SIGN,
 };
 use super::true_optimum::{
     Certificate, Check, Contacts, Located, Stretch, beyond_bounds, is_attracted, ranges, variation,
@@ -64,12 +64,18 @@ pub(super) fn accuracy(problem: &Problem) -> f64 {
 /// where the replay does not reach the end.
 fn other_objective(located: &Located, solution: &Solution, replay: &Verification) -> f64 {
     let own = solution.objective();
-    let size = own.abs().max(located.objective_size());
+    let size = own.abs().max(size_of_objective(located, solution.model().meaning()));
     match replay.simulation.objective {
         Some(its) => (its - own).abs() / size,
         None if solution.problem.has_objective => f64::INFINITY,
         None => 0.0,
     }
+}
+
+/// Beside its value; of measured data as much as a small part of each measurement makes.
+pub(super) fn size_of_objective(located: &Located, model: &Model) -> f64 {
+    let measured = || model.objective_at_rest().map_or(0.0, |it| MEASURED * it.abs());
+    if model.objective_reads_sums() { measured() } else { located.objective_size() }
 }
 
 /// How wrong the sign of the multiplier of a state or a path condition at its bound is; infinite
@@ -84,8 +90,9 @@ fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
 /// only touches the bound, for no time.
 fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec<Stretch>)> {
     let controls = between.controls.iter().enumerate();
+    let contacts = Contacts::new(model, located);
     let of_control = |(at, it): (usize, &Variable)| {
-        (it.name.clone(), stretches(located, &|phase| [phase.arcs[at], Arc::Free]))
+        (it.name.clone(), stretches(located, &|_, phase| [phase.arcs[at], Arc::Free]))
     };
     let mut all: Vec<(String, Vec<Stretch>)> = controls.map(of_control).collect();
     let mut conditions = model.path.iter();
@@ -94,7 +101,7 @@ fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec
             Some(state) => model.states[state].place.name.clone(),
             None => conditions.next().map_or(String::new(), |it| it.place.name.clone()),
         };
-        let own = stretches(located, &|phase| [phase.contacts[at], phase.touches[at]]);
+        let own = stretches(located, &|j, phase| [contacts.seen(j, at), phase.touches[at]]);
         if own.len() > 1 || own.iter().any(|it| it.arc != "free") {
             all.push((name, own));
         }
@@ -103,12 +110,13 @@ fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec
 }
 
 /// From what each phase has along it, and where it begins.
-fn stretches(located: &Located, of: &dyn Fn(&PhaseOfModes) -> [Arc; 2]) -> Vec<Stretch> {
+fn stretches(located: &Located, of: &dyn Fn(usize, &PhaseOfModes) -> [Arc; 2]) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = Vec::new();
     let structure = &located.structure;
-    for (phase, pair) in structure.phases.iter().zip(structure.times.windows(2)) {
-        let [along, begin] = of(phase).map(arc_name);
-        if begin != "free" && along == "free" {
+    for ((j, phase), pair) in structure.phases.iter().enumerate().zip(structure.times.windows(2)) {
+        let [along, begin] = of(j, phase).map(arc_name);
+        let goes_on = all.last().is_some_and(|it| it.arc == begin);
+        if begin != "free" && along == "free" && !goes_on {
             all.push(Stretch { arc: begin, from: pair[0], to: pair[0] });
         }
         match all.last_mut().filter(|it| it.arc == along) {

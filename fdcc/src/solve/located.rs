@@ -3,7 +3,7 @@
 use super::Solution;
 use super::certify::certificate;
 use super::found::Found;
-use super::kinks::is_tight;
+use super::kink_gaps::is_tight;
 use super::report::Options;
 use super::sequences::happened;
 use super::true_optimum::{
@@ -102,10 +102,11 @@ impl Search<'_> {
     /// On shorter and shorter intervals where nothing is wrong but the replay.
     fn halved(&mut self, mut located: Located) -> (Solution, Located) {
         let mut answer = self.answer(&located);
-        while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
+        while let Some(most) = most_halvings(&answer) {
             let models = [self.model.meaning(), self.between];
             let (problem, stop) = (&self.found.problem, self.options.stop);
-            let finer = on_half_intervals(models, problem, &located, stop, &mut self.spent);
+            let coarse = (&located, most);
+            let finer = on_half_intervals(models, problem, coarse, stop, &mut self.spent);
             let Some(finer) = finer else { break };
             located = finer;
             answer = self.answer(&located);
@@ -159,11 +160,17 @@ impl Search<'_> {
     fn nothing(&self) -> Certificate {
         let missing = match () {
             () if (self.options.stop)().is_break() => "finished",
-            () if !self.between.sums.is_empty() => "without data",
+            () if !self.between.are_sums_terms() => "without data",
             () => "located",
         };
         Certificate::nothing_located(missing)
     }
+}
+
+/// How often intervals may be halved for an answer; nothing where that does not help.
+pub(super) fn most_halvings(answer: &Solution) -> Option<u32> {
+    let certificate = answer.certificate.as_ref().filter(|it| it.is_inaccurate());
+    certificate.map(Certificate::most_halvings)
 }
 
 /// The jumps and crossings of a smoothed answer.
@@ -191,7 +198,8 @@ fn asks_for_truth(model: &Model, between: &fdcc_compiler::Model, found: &Found) 
 /// Whether an answer of the true system may be near one that is smoothed: also near one that cannot
 /// be solved where it is, such as a rest to which friction alone leads.
 pub(super) fn may_be_near(status: &Status, is_impossible: bool) -> bool {
-    let is_lost = matches!(status, Status::IterationLimit | Status::Infeasible);
+    let is_lost =
+        matches!(status, Status::IterationLimit | Status::Infeasible | Status::NumericalFailure);
     status.is_solved() || is_lost && !is_impossible
 }
 

@@ -2,9 +2,9 @@
 //! model asks for that.
 
 use super::Solution;
-use super::certify::{accuracy, certificate};
+use super::certify::{accuracy, certificate, size_of_objective};
 use super::found::{FoundChain, Phases};
-use super::located::{grid, may_be_near};
+use super::located::{grid, may_be_near, most_halvings};
 use super::phases::Whole as WholeChain;
 use super::report::Options;
 use super::true_optimum::{
@@ -57,8 +57,9 @@ impl Search<'_> {
         let located = locate_in_phases(whole, self.parts, &smoothed, stop, &mut spent);
         let Some(mut located) = located else { return Err(self.nothing()) };
         let mut answer = self.answer(&located);
-        while answer.certificate.as_ref().is_some_and(Certificate::is_inaccurate) {
-            let finer = halved_in_phases(whole, self.parts, located.clone(), stop, &mut spent);
+        while let Some(most) = most_halvings(&answer) {
+            let coarse = (located.clone(), most);
+            let finer = halved_in_phases(whole, self.parts, coarse, stop, &mut spent);
             let Some(finer) = finer else { break };
             answer = self.answer(&finer);
             located = finer;
@@ -164,7 +165,8 @@ fn gap_of_objective(located: &[Located], solution: &Solution, replays: &[Verific
         return 0.0;
     }
     let own = solution.objective();
-    let sizes = located.iter().map(Located::objective_size);
+    let phases = solution.model().meaning().phases.iter();
+    let sizes = located.iter().zip(phases).map(|(it, of)| size_of_objective(it, &of.model));
     let size = own.abs().max(sizes.fold(0.0, f64::max));
     let of_phases: f64 = replays.iter().filter_map(|it| it.simulation.objective).sum();
     let linked = solution.problem.sense * objective_of_links(chain, &solution.record(), replays);
@@ -202,7 +204,7 @@ fn problem(part: &Part, located: &Located, outcome: &Outcome) -> Problem {
 /// named; else because no phase says on how many intervals.
 fn asks_for_truth(model: &Model, found: &FoundChain) -> bool {
     let phases = || model.meaning().phases.iter().map(|it| &it.model);
-    if phases().any(|it| !it.sums.is_empty()) {
+    if phases().any(|it| !it.are_sums_terms()) {
         return false;
     }
     let mut switched = phases().filter(|it| !it.surfaces.is_empty()).peekable();
@@ -214,7 +216,8 @@ fn asks_for_truth(model: &Model, found: &FoundChain) -> bool {
         }
         None => {
             let has_objective = found.chain.phases[0].has_objective;
-            found.is_solved() && has_objective && phases().all(|it| !it.method.names_grid)
+            let is_meant = |it: &fdcc_compiler::Model| it.sums.is_empty() && !it.method.names_grid;
+            found.is_solved() && has_objective && phases().all(is_meant)
         }
     }
 }

@@ -9,6 +9,8 @@ mod controller;
 mod families;
 mod found;
 mod grid;
+mod kink_gaps;
+mod kink_words;
 mod kinks;
 mod located;
 mod located_at_times;

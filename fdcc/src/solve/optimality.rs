@@ -101,10 +101,11 @@ impl Solution {
         let constant = constant.map(|figure| check(condition, figure));
         let pause = pause.map(|gain| check(Condition::Pause, gain.max(0.0)));
         let names = self.problem.controls.iter().map(|control| control.name.clone());
-        let signs = names.zip(hamiltonian.violations.iter().copied()).map(|(name, figure)| Check {
+        let violations = hamiltonian.violations.iter().enumerate();
+        let signs = names.zip(violations).map(|(name, (at, figure))| Check {
             condition: Condition::Minimum,
             control: Some(name),
-            figure,
+            figure: (figure - self.part_of_ends(at)).max(0.0),
             size: 1.0,
             limit: VIOLATED,
         });
@@ -117,5 +118,17 @@ impl Solution {
             limit: 0.0,
         };
         constant.into_iter().chain(pause).chain(signs).chain([curvature]).collect()
+    }
+
+    /// The part of the time that the first and the last interval take, as far as conditions at the
+    /// ends or links read a control there: that is worth more than the Hamiltonian says.
+    fn part_of_ends(&self, control: usize) -> f64 {
+        let own = self.model().meaning().conditions_read(control);
+        let linked = self.linked.get(control).copied().unwrap_or_default();
+        let time = self.time();
+        let count = time.len();
+        let lengths = [time[1] - time[0], time[count - 1] - time[count - 2]];
+        let part = |at: usize| lengths[at] / (time[count - 1] - time[0]);
+        (0..2).filter(|at| own[*at] || linked[*at]).map(part).sum()
     }
 }

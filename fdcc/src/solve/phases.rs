@@ -24,7 +24,11 @@ impl Solution {
         let parts = own.map(|((model, problem), outcome)| {
             Solution::new(model, super::found::Found::new(problem.clone(), outcome.clone()))
         });
-        let parts: Vec<Solution> = parts.collect();
+        let mut parts: Vec<Solution> = parts.collect();
+        for (at, part) in parts.iter_mut().enumerate() {
+            let controls = 0..part.problem.controls.len();
+            part.linked = controls.map(|it| model.meaning().links_read(at, it)).collect();
+        }
         let problem = frame(&chain);
         let outcome_of_all = of_all(&outcome, problem.parameters.len());
         let whole = super::found::Found::new(problem, outcome_of_all);

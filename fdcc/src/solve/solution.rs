@@ -67,6 +67,8 @@ pub struct Solution {
     pub certificate: Option<Certificate>,
     /// What holds at the ends add to [`Self::sensitivities`].
     pub(super) of_holds: Vec<f64>,
+    /// Of a phase whether links read the first and the last value of each control.
+    pub(super) linked: Vec<[bool; 2]>,
     /// Those of its phases.
     pub(super) parts: Vec<Solution>,
     /// What the solver saw of a model with phases.
@@ -88,6 +90,7 @@ impl Solution {
             between_jumps: found.phases,
             certificate: None,
             of_holds: Vec::new(),
+            linked: Vec::new(),
             parts: Vec::new(),
             whole: None,
         }

@@ -20,6 +20,7 @@ pub use modes::Stay;
 pub(crate) use phases::{objective_of_links, verify_phases};
 
 use crate::error::Error;
+use crate::measured::add_objective;
 use crate::record::{Record, find};
 use crate::replay::Replay;
 use alignment::Alignment;
@@ -126,7 +127,8 @@ pub(crate) fn verify(
         extremes: true,
         ..Options::default()
     };
-    let simulation = simulate(&system, &controls, &options);
+    let mut simulation = simulate(&system, &controls, &options);
+    add_objective(&model, &system, &controls, &options, &mut simulation);
     let is_whole = matches!(simulation.status, Status::Completed)
         && simulation.states.iter().all(|column| column.len() == points.times.len());
     let tape = simulation.tape.as_ref().expect("it was asked for");

@@ -35,6 +35,18 @@ pub struct Measurements {
     /// The state that grows by the term at the time of each row; none if the sum is a part of the
     /// objective.
     pub state: Option<usize>,
+    /// Whether rows before its time and rows behind it belong to other phases; else they are at the
+    /// ends of its time.
+    pub is_shared: [bool; 2],
+}
+
+impl Measurements {
+    /// Whether a row at this normalised time is one of this phase. One between two phases belongs
+    /// to the second.
+    pub(crate) fn has(&self, tau: f64) -> bool {
+        let [before, behind] = self.is_shared;
+        (!before || tau >= 0.0) && (!behind || tau < 1.0)
+    }
 }
 
 impl Problem {

@@ -71,7 +71,8 @@ impl Hamiltonian {
             true => vec![0.0; problem.layout.u],
             false => minimum::violations(&problem.controls, nlp, solution, (duration, size)),
         };
-        let is_constant = problem.is_autonomous;
+        // At the time of a row of measured data costates jump.
+        let is_constant = problem.is_autonomous && problem.measurements.is_empty();
         let mut own = Hamiltonian {
             values,
             size,

@@ -21,13 +21,13 @@ pub fn sums_over_rows(
     sums.iter().map(|sum| nlp.sum_over_rows(sum, parameters, &solution.v)).collect()
 }
 
-/// The terms of all rows of such sums.
+/// The terms of such sums in the time of the problem, each with the number of its row.
 pub fn terms_of_rows(
     problem: &Problem,
     solution: &Solution,
     parameters: &[f64],
     sums: &[&Measurements],
-) -> Vec<Vec<f64>> {
+) -> Vec<Vec<(usize, f64)>> {
     let nlp = TranscribedNlp::new(problem);
     sums.iter().map(|sum| nlp.terms_of_rows(sum, parameters, &solution.v)).collect()
 }

@@ -41,6 +41,8 @@ pub(super) struct Measured<'p> {
     tables: Tables,
     /// The interval of each row, and what the function reads there.
     rows: Vec<(usize, Vec<Combination>)>,
+    /// Which of them are rows of this phase.
+    is_own: Vec<bool>,
     /// Rows of an interval that the sum enters, with factors; none for the objective.
     targets: Vec<(usize, f64)>,
     /// Moves to the variables.
@@ -65,6 +67,7 @@ impl<'p> Measured<'p> {
             stages: matrices.stages,
             tables: Tables::new(&measurements.function, count),
             rows: vec![(0, Vec::new()); count],
+            is_own: vec![true; count],
             targets: targets(interval, measurements),
             gradient: Vec::new(),
             jacobian: Families::default(),
@@ -188,7 +191,9 @@ impl<'p> Measured<'p> {
         let [first, last] = self.ends;
         let begin = self.tables.points.columns() - 2;
         for row in 0..self.rows.len() {
-            let tau = ((self.measurements.times[row] - first) / (last - first)).clamp(0.0, 1.0);
+            let tau = (self.measurements.times[row] - first) / (last - first);
+            self.is_own[row] = self.measurements.has(tau);
+            let tau = tau.clamp(0.0, 1.0);
             let (k, time) = mesh.find(tau);
             let length = mesh.at(k, 1.0) - mesh.at(k, 0.0);
             self.tables.points.column_mut(0)[row] = tau;
@@ -205,7 +210,8 @@ impl<'p> Measured<'p> {
     fn find_moves(&mut self) {
         let (mut gradient, mut jacobian, mut hessian) = (Vec::new(), Vec::new(), Vec::new());
         let row_step = self.stages.row_step();
-        for (row, (k, inputs)) in self.rows.iter().enumerate() {
+        let own = self.rows.iter().enumerate().filter(|it| self.is_own[it.0]);
+        for (row, (k, inputs)) in own {
             self.slopes(inputs, |column, variable, coefficient| {
                 if self.targets.is_empty() {
                     let target = variable.first + k * variable.step;
@@ -228,22 +234,22 @@ impl<'p> Measured<'p> {
         self.hessian.moves = hessian;
     }
 
-    /// The terms of all rows at the loaded points.
-    pub(super) fn terms(&mut self, parameters: &[f64]) -> &[f64] {
+    /// The terms of the rows of this phase at the loaded points, each with the number of its row.
+    pub(super) fn terms(&mut self, parameters: &[f64]) -> Vec<(usize, f64)> {
         self.tables.evaluate(parameters);
-        self.tables.values.column(0)
+        let terms = self.tables.values.column(0).iter().copied().enumerate();
+        terms.filter(|it| self.is_own[it.0]).collect()
     }
 
     /// Adds the terms to the rows; returns their part of the objective.
     pub(super) fn add_values(&mut self, parameters: &[f64], rows: &mut [f64]) -> f64 {
-        self.tables.evaluate(parameters);
-        let terms = self.tables.values.column(0);
+        let terms = self.terms(parameters);
         for (target, factor) in &self.targets {
-            for ((k, _), term) in self.rows.iter().zip(terms) {
-                rows[target + k * self.stages.row_step()] += factor * term;
+            for (row, term) in &terms {
+                rows[target + self.rows[*row].0 * self.stages.row_step()] += factor * term;
             }
         }
-        if self.targets.is_empty() { terms.iter().sum() } else { 0.0 }
+        if self.targets.is_empty() { terms.iter().map(|it| it.1).sum() } else { 0.0 }
     }
 
     /// Evaluates all derivatives at the loaded points.
@@ -260,11 +266,12 @@ impl<'p> Measured<'p> {
             let each = self.targets.iter().map(|(row, by)| by * multipliers[row + k * row_step]);
             each.sum::<f64>()
         };
-        let of = |(k, _): &(usize, Vec<Combination>)| match self.targets.is_empty() {
-            true => weight,
-            false => sum(*k),
+        let of = |((k, _), is_own): (&(usize, Vec<Combination>), &bool)| match is_own {
+            false => 0.0,
+            true if self.targets.is_empty() => weight,
+            true => sum(*k),
         };
-        self.rows.iter().map(of).collect()
+        self.rows.iter().zip(&self.is_own).map(of).collect()
     }
 
     /// The points of all rows, as loaded.

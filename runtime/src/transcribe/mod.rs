@@ -150,22 +150,22 @@ impl<'p> TranscribedNlp<'p> {
 
     /// What a sum over rows is at `v`.
     pub(crate) fn sum_over_rows(&self, sum: &Measurements, parameters: &[f64], v: &[f64]) -> f64 {
-        self.terms_of_rows(sum, parameters, v).iter().sum()
+        self.terms_of_rows(sum, parameters, v).iter().map(|it| it.1).sum()
     }
 
-    /// What it adds up.
+    /// What it adds up in the time of the problem, each term with the number of its row.
     pub(crate) fn terms_of_rows(
         &self,
         sum: &Measurements,
         parameters: &[f64],
         v: &[f64],
-    ) -> Vec<f64> {
+    ) -> Vec<(usize, f64)> {
         let (jacobian, hessian) = (Builder::default(), Builder::default());
         let mesh = self.mesh.clone();
         let mut unused = Matrices { stages: self.stages, mesh, jacobian, hessian };
         let mut measured = Measured::new(self.problem, sum, &self.interval, &mut unused);
         measured.load(&self.interval, &self.mesh, parameters, v);
-        measured.terms(parameters).to_vec()
+        measured.terms(parameters)
     }
 
     /// Whether a row is a step of a differential equation.

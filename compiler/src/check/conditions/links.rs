@@ -1,14 +1,16 @@
 //! FDC0102: a link, or a state in one, that is given twice; FDC0412: a link onto a start that is
-//! given; FDC0413: a state that a link leaves out.
+//! given; FDC0413: a state that a link leaves out, and neighbours that no link ties together.
 
 use crate::check::facts::Facts;
 use crate::syntax::scope::declared;
-use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind, Start};
+use crate::syntax::text;
+use fdcc_grammar::ast::{Assignment, Ident, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::collections::HashMap;
 
 /// Reports links that say something twice, or too little.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    unlinked(facts, found);
     let mut phases: HashMap<&str, &[Item]> = HashMap::new();
     let mut known: HashMap<(&str, &str), Span> = HashMap::new();
     for item in &facts.items {
@@ -44,6 +46,43 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
             }
         }
     }
+}
+
+/// Reports neighbours in time that no link ties together, where a state of both would begin anew.
+fn unlinked(facts: &Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
+    let phases = facts.items.iter().filter_map(|item| match &item.kind {
+        ItemKind::Phase { name, items, .. } => Some((name, &items[..])),
+        _ => None,
+    });
+    let phases: Vec<(&Ident, &[Item])> = phases.collect();
+    let is_tied = |before: &Ident, name: &Ident| {
+        facts.items.iter().any(|item| match &item.kind {
+            ItemKind::Link { from, to, .. } => to.name == name.name || from.name == before.name,
+            _ => false,
+        })
+    };
+    for pair in phases.windows(2) {
+        let [(before, source), (name, target)] = pair else { unreachable!("windows of two") };
+        let (Some(ends), Some(begins)) = (interval(source), interval(target)) else { continue };
+        let follows = text::expr(&ends.upper) == text::expr(&begins.lower);
+        let anew = states(target)
+            .find(|it| it.start.is_none() && states(source).any(|own| own.is_like(it)));
+        let Some(state) = anew.filter(|_| follows && !is_tied(before, name)) else { continue };
+        let message = format!("no link leads from `{}` to `{}`", before.name, name.name);
+        let found_one = Diagnostic::new(Code::LeftOut, message, name.span, "a phase of its own");
+        let found_one = found_one.label(state.name.span, "begins anew here");
+        found.push(found_one.help(format!(
+            "to go on, write `link {} -> {} {{ same }}`; if it is to begin anew, say `start free`",
+            before.name, name.name
+        )));
+    }
+}
+
+fn interval(items: &[Item]) -> Option<&Interval> {
+    items.iter().find_map(|item| match &item.kind {
+        ItemKind::Time { interval, .. } => Some(interval),
+        _ => None,
+    })
 }
 
 /// A state of a phase.

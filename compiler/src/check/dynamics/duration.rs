@@ -1,5 +1,8 @@
 //! FDC0402: a duration that the optimiser may choose must stay above 0.
 //!
+//! Where both ends are chosen, or those of a phase, that is a condition of the problem, and only
+//! the guess has to meet it.
+//!
 //! With `D = tf - t0` affine in the unknowns, its least value over their bounds is
 //! `D(0) + sum_i min(c_i lower_i, c_i upper_i)`. Where all `c_i` are above 0 the unknowns that may
 //! be too small are told, otherwise the difference of both times.
@@ -19,9 +22,13 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let duration = meaning.graph.sub(meaning.interval[1], meaning.interval[0]);
     let mut unknowns = Vec::new();
     let mut inputs: Vec<f64> = vec![0.0; meaning.symbols.len()];
+    let mut guessed = inputs.clone();
     for at in 0..meaning.symbols.len() {
         match meaning.symbols[at] {
-            Symbol::Param(index) => inputs[at] = meaning.param_values[index],
+            Symbol::Param(index) => {
+                inputs[at] = meaning.param_values[index];
+                guessed[at] = inputs[at];
+            }
             Symbol::Free(index) => unknowns.push((at as u32, index)),
             _ => {}
         }
@@ -33,6 +40,8 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
         let slope = meaning.numeric(slope);
         let range = meaning.model.frees[index].range;
         let ends = [range.lower, range.upper].map(|end| meaning.numeric(end));
+        let guess = meaning.model.frees[index].guess.map(|it| meaning.numeric(it));
+        guessed[input as usize] = guess.unwrap_or(0.5 * (ends[0] + ends[1]));
         if slope != 0.0 {
             least += (slope * ends[0]).min(slope * ends[1]);
             involved.push((index, slope, ends));
@@ -41,11 +50,17 @@ pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     if least > 0.0 || least.is_nan() {
         return;
     }
-    if involved.iter().any(|it| it.1 < 0.0)
+    let at_guess = evaluate(&meaning.graph, &[duration], &guessed, &[])[0];
+    let is_difference = involved.iter().any(|it| it.1 < 0.0);
+    let is_condition = facts.phase.is_some() || is_difference && involved.len() > 1;
+    if is_condition && at_guess > 0.0 {
+        return;
+    }
+    if (is_condition || is_difference)
         && let Some(interval) = interval(facts)
     {
         let names = involved.iter().map(|it| &facts.meaning.model.frees[it.0].place);
-        found.push(difference(interval, &names.collect::<Vec<_>>(), least));
+        found.push(difference(interval, &names.collect::<Vec<_>>(), at_guess.min(least)));
         return;
     }
     for (index, slope, ends) in involved {
@@ -79,8 +94,9 @@ fn difference(interval: &Interval, frees: &[&Place], least: f64) -> Diagnostic {
     found.help(match frees {
         [one] => format!("give `{}` bounds that keep the last time after the first", one.name),
         _ => format!(
-            "declare a duration above 0, such as `free D in [0.1, 10]`, and write the time over \
-             `[{first}, {first} + D]`; or give both times bounds that do not overlap"
+            "give both a `guess` with which `{last}` is after `{first}`; or declare a duration \
+             above 0, such as `free D in [0.1, 10]`, and write the time over \
+             `[{first}, {first} + D]`"
         ),
     })
 }

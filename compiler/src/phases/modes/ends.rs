@@ -3,8 +3,8 @@
 //! Where `psi = 0` is held until the end, `end` conditions that add up to it would be said twice,
 //! and the Jacobian of the chain would lose rank: a block that rests in the end with `end v == 0`.
 //!
-//! Bounds of states and path conditions hold at the nodes of the collocation, which say nothing of
-//! the last time: a tank would be emptied behind the last node.
+//! Bounds of states and path conditions, and the sides of surfaces, hold at the nodes of the
+//! collocation, which say nothing of the last time: a tank would be emptied behind the last node.
 
 use super::hold_parameters::is_of_end;
 use super::independent::Independent;
@@ -38,8 +38,30 @@ impl Modes<'_> {
             known.add(self, gap);
         }
         let mut all = self.limits_at_end(&known);
+        all.extend(self.modes_at_end(&known));
         all.extend(rows);
         all
+    }
+
+    /// The sides of the surfaces that are not held in the last phase, where nothing fixes them.
+    fn modes_at_end(&mut self, known: &Independent) -> Vec<Constraint> {
+        let (model, last) = (self.between.division.model, &self.phases[self.phases.len() - 1]);
+        let mut rows = Vec::new();
+        for (switch, mode) in model.switches().iter().zip(&last.modes) {
+            let surface = &model.surfaces[switch.surfaces.start];
+            let range = match mode {
+                Mode::Above if !switch.is_ball => self.between.division.not_below(),
+                Mode::Below if !switch.is_ball => self.between.division.not_above(),
+                _ => continue,
+            };
+            let value = self.between.division.at_own_end(surface.psi);
+            if known.clone().add(self, value) {
+                let name = format!("{} at the end", surface.place.name);
+                let place = Place { name, ..surface.place };
+                rows.push(Constraint { place, value, range });
+            }
+        }
+        rows
     }
 
     /// Those on whose rates a control acts at once, that are not kept in the last phase, and not

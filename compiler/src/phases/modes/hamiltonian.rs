@@ -100,7 +100,8 @@ impl Modes<'_> {
             Control { range, guess: None, ..it }
         };
         let controls = controls.into_iter().map(of_control).collect();
-        let own = Model { graph: frozen.graph, symbols, path, controls, ..model.clone() };
+        let sums = Vec::new();
+        let own = Model { graph: frozen.graph, symbols, path, controls, sums, ..model.clone() };
         resting(own, value)
     }
 }

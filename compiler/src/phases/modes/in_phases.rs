@@ -16,7 +16,8 @@ use std::ops::Range as Places;
 ///
 /// # Errors
 ///
-/// What cannot be divided into phases of given modes yet: sums over rows, jumps within phases.
+/// What cannot be divided into phases of given modes: sums over rows of which the objective is no
+/// sum, jumps within phases.
 pub fn with_modes_in_phases(
     model: &Model,
     structures: &[&[PhaseOfModes]],
@@ -150,7 +151,7 @@ impl<'m> Chain<'m> {
             );
             let read = match symbol {
                 Symbol::AtEnd(_) | Symbol::ControlAtEnd(_) => places.end - 1..places.end,
-                Symbol::Integral(_) => places,
+                Symbol::Integral(_) | Symbol::Sum(_) => places,
                 _ => places.start..places.start + 1,
             };
             let read: Vec<ExprId> = read.map(|j| self.of_phase(j, symbol)).collect();

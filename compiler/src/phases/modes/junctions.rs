@@ -39,8 +39,8 @@ impl Modes<'_> {
         rows
     }
 
-    /// Path conditions on which a control acts at once, on both sides of the end of phase `j`, where
-    /// they are not met as equations: for the same reason.
+    /// Path conditions on which a control acts at once, on both sides of the end of phase `j`,
+    /// where they are not met as equations: for the same reason.
     pub(super) fn ends_of_path(&mut self, j: usize) -> Vec<Constraint> {
         let phases = self.phases;
         let states = bounded_states(self.between.division.model).len();
@@ -82,6 +82,7 @@ impl Modes<'_> {
         before.modes == after.modes
             && before.contacts == after.contacts
             && is_untouched
+            && !after.is_cut
             && after.jump.is_none()
             && self.is_regular(j, control)
     }

@@ -88,6 +88,8 @@ pub struct PhaseOfModes {
     pub halvings: u32,
     /// Whether its intervals get shorter and shorter towards its ends.
     pub is_graded: bool,
+    /// Whether controls jump where it begins, though nothing else changes.
+    pub is_cut: bool,
 }
 
 impl PhaseOfModes {
@@ -101,7 +103,17 @@ impl PhaseOfModes {
             && self.halvings == before.halvings
             && self.is_graded == before.is_graded
             && !is_touched
+            && !self.is_cut
             && self.jump.is_none()
+    }
+
+    /// Whether it reaches the limits that one of two others reaches, and both reach some.
+    pub fn is_union(&self, before: &Self, after: &Self) -> bool {
+        let both = before.contacts.iter().zip(&after.contacts);
+        let union = both.map(|(a, b)| if *a == Arc::Free { *b } else { *a });
+        self.contacts != before.contacts
+            && self.contacts != after.contacts
+            && self.contacts.iter().copied().eq(union)
     }
 
     /// Whether something determines the controls at each node.
@@ -135,7 +147,8 @@ impl PhaseOfModes {
 ///
 /// # Errors
 ///
-/// What cannot be divided into phases of given modes yet: phases, sums over rows.
+/// What cannot be divided into phases of given modes: phases, sums over rows of which the objective
+/// is no sum.
 pub fn with_modes(model: &Model, phases: &[PhaseOfModes]) -> Result<Model, Vec<Diagnostic>> {
     with_modes_from(model, phases, None)
 }
@@ -167,7 +180,8 @@ fn prepared(model: &Model) -> Model {
 
 fn refuse(model: &Model) -> Result<(), Vec<Diagnostic>> {
     let phase = model.phases.first().map(|it| not_yet(it.place.span, "a switch within a phase"));
-    let sum = model.sums.first().map(|it| not_yet(it.place.span, "a sum over rows with switches"));
+    let sum = model.sums.first().filter(|_| !model.are_sums_terms());
+    let sum = sum.map(|it| not_yet(it.place.span, "a function of a sum over rows with switches"));
     let found = model.not_yet.first().cloned().or(phase).or(sum);
     found.map_or(Ok(()), |it| Err(vec![it]))
 }

@@ -4,7 +4,9 @@ use super::junctions::on_arc;
 use super::{Arc, Mode, Modes, PhaseOfModes};
 use crate::expressions::graph::ExprId;
 use crate::model::guess::straight_guesses;
-use crate::model::{Constraint, Control, Integral, Model, Place, Range, Report, State, Symbol};
+use crate::model::{
+    Constraint, Control, Integral, Model, Place, Range, Report, State, Sum, Symbol,
+};
 use crate::phases::hold::approach;
 use crate::phases::shares::Shares;
 use fdcc_runtime::problem::Method;
@@ -22,6 +24,7 @@ impl Modes<'_> {
         let value = shares.of_phase(&mut self.between.division.graph, j, last);
         let place = model.objective.as_ref().map(|it| it.0.clone());
         let report = self.report(&meanings);
+        let sums = self.sums(j, &meanings);
         let boundary = if j == 0 { self.starts() } else { Vec::new() };
         let method = Method { controls: of.shape, ..model.method.clone() };
         Model {
@@ -36,6 +39,7 @@ impl Modes<'_> {
             controls,
             path,
             integrals,
+            sums,
             report,
             ..model.clone()
         }
@@ -111,6 +115,12 @@ impl Modes<'_> {
         }
         shares.integrals.iter().for_each(|at| integrals[*at].is_linked = true);
         integrals
+    }
+
+    fn sums(&mut self, j: usize, meanings: &[ExprId]) -> Vec<Sum> {
+        let mut sums = self.between.division.sums(j);
+        sums.iter_mut().for_each(|it| it.term = self.with_selectors(it.term, meanings));
+        sums
     }
 
     fn report(&mut self, meanings: &[ExprId]) -> Vec<Report> {

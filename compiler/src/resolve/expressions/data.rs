@@ -155,7 +155,7 @@ impl<'a> Elaborator<'a> {
         }
         let Measured { part: term, table, time, .. } = sum;
         let place = Place { name: text::expr(whole), span: whole.span };
-        let sum = Sum { place, table, time, term, is_fit: false };
+        let sum = Sum { place, table, time, term, is_fit: false, is_shared: [false; 2] };
         let Some(part) = self.sum_over_rows(sum) else { return Value::default() };
         let traits = Traits { reads: Reads::WHOLE, ..traits };
         self.admit("sum", Value::scalar(part, traits), whole.span)

@@ -134,6 +134,14 @@ impl<'a> Elaborator<'a> {
     }
 
     fn unknown_name(&mut self, name: &str, span: Span) -> Value {
+        let owners = self.phases.iter().filter(|phase| phase.names.contains_key(name));
+        let owners: Vec<String> =
+            owners.map(|phase| format!("`{}.{name}`", phase.name.name)).collect();
+        if !owners.is_empty() {
+            let message = format!("nothing called `{name}` here");
+            let found = Diagnostic::new(Code::UnknownName, message, span, "declared in phases");
+            return self.fail(found.help(format!("write {}", owners.join(" or "))));
+        }
         let locals: Vec<&str> =
             self.here.visible().iter().map(|local| local.0).chain(["pi"]).collect();
         let found = self.scope.unknown(name, span, &locals, &format!("param {name} = 1"));

@@ -16,9 +16,29 @@ impl<'a> Elaborator<'a> {
         let Some(at) = self.data_set(data) else { return };
         let Some(time) = self.times_of(at, data) else { return };
         self.fits.get_or_insert((keyword, Vec::new()));
+        self.fitted_twice(signals);
         for fitted in signals {
             let sum = self.fitted(at, time, fitted);
             self.fits.iter_mut().for_each(|fits| fits.1.extend(sum));
+        }
+    }
+
+    /// A signal that is compared with the same column twice would count twice.
+    fn fitted_twice(&mut self, signals: &'a [Fitted]) {
+        let column = |it: &'a Fitted| it.column.as_ref().map(|column| column.name.as_str());
+        let is_same = |a: &'a Fitted, b: &'a Fitted| {
+            text::expr(&a.signal) == text::expr(&b.signal) && column(a) == column(b)
+        };
+        for (at, own) in signals.iter().enumerate() {
+            if let Some(first) = signals[..at].iter().find(|it| is_same(it, own)) {
+                let message = format!("`{}` is fitted twice", text::expr(&own.signal));
+                let found = Diagnostic::new(Code::DuplicateName, message, own.span, "again");
+                let found = found.label(first.span, "first here");
+                self.diagnostics.push(found.help(
+                    "its rows would count twice; leave one out, or name another column: \
+                     `x = second sd 0.1`",
+                ));
+            }
         }
     }
 
@@ -99,7 +119,14 @@ impl<'a> Elaborator<'a> {
         let error = self.graph.div(error, deviation);
         let term = self.graph.square(error);
         let place = Place { name: text::expr(&fitted.signal), span: fitted.span };
-        let sum = self.sum_over_rows(Sum { place, table, time, term, is_fit: true })?;
+        let sum = self.sum_over_rows(Sum {
+            place,
+            table,
+            time,
+            term,
+            is_fit: true,
+            is_shared: [false; 2],
+        })?;
         let sum = Value::scalar(sum, traits);
         self.note(Role::Objective, &sum);
         self.expect_number(&sum, fitted.span)

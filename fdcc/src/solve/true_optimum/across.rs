@@ -34,7 +34,8 @@ impl Search<'_> {
             held,
             slope: f64::NEG_INFINITY,
             is_forced: false,
-            is_doubtful: false,
+            // What is written of the ends may leave no way back.
+            is_doubtful: true,
         };
         all.into_iter().map(candidate).collect()
     }

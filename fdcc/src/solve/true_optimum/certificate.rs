@@ -1,6 +1,7 @@
 //! What shows that a located answer is a local optimum of the system that was written: figures of
 //! the true system, each with its limit.
 
+use super::tuning::structure::{MOST_HALVINGS, MOST_OF_ALL};
 use fdcc_runtime::solution::modes::Mode;
 use std::cmp::Ordering;
 
@@ -108,6 +109,14 @@ impl Certificate {
         failing.peek().is_some()
             && failing
                 .all(|it| matches!(it.name, "replayed" | "objective" | "conditions" | "modes"))
+    }
+
+    /// How often intervals may be halved for that. Where states or conditions alone differ they are
+    /// as accurate as their intervals are short; an objective may depend on what no grid sees.
+    pub(crate) fn most_halvings(&self) -> u32 {
+        let is_simple = |it: &&Check| matches!(it.name, "replayed" | "conditions");
+        let mut failing = self.checks.iter().filter(|check| !check.passes());
+        if failing.all(|it| is_simple(&it)) { MOST_OF_ALL } else { MOST_HALVINGS }
     }
 
     /// Where no structure could be solved (`located`), the search was stopped from outside

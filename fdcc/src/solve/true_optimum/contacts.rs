@@ -4,7 +4,9 @@
 
 use super::Located;
 use super::tracks::Track;
-use super::tuning::contacts::{FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE};
+use super::tuning::contacts::{
+    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN,
+};
 use super::tuning::structure::SHORTEST;
 use fdcc_compiler::{Arc, Limit, Mode, Model, PhaseOfModes, Switch, limits, may_hold};
 use fdcc_runtime::problem::{Columns, Problem};
@@ -90,6 +92,22 @@ impl<'l> Contacts<'l> {
         found
     }
 
+    /// What a limit does in a phase, as its values show: an arc may be there that nothing keeps,
+    /// where others say the same.
+    pub fn seen(&self, j: usize, limit: usize) -> Arc {
+        let known = self.located.structure.phases[j].contacts[limit];
+        let (problem, row) = (&self.located.chain.phases[j], self.row(j, limit));
+        let bounds = problem.path_bounds[row];
+        let values = path_values(problem, &self.located.outcome.phases[j].trajectory, row);
+        let is_at =
+            |bound: f64| values.iter().all(|it| (it - bound).abs() <= SEEN * self.ranges[limit]);
+        match known {
+            Arc::Free if is_at(bounds.lower) => Arc::Lower,
+            Arc::Free if is_at(bounds.upper) => Arc::Upper,
+            known => known,
+        }
+    }
+
     /// Whether the motion would rather go through the surface of a jump that does not happen.
     pub fn is_at_jump(&self) -> bool {
         (0..self.located.structure.phases.len()).any(|j| {
@@ -99,9 +117,22 @@ impl<'l> Contacts<'l> {
             rows.any(|row| {
                 let mut range = Extent::default();
                 self.extend(&mut range, j, row);
-                !self.runs(j, row, range.length()).is_empty()
+                let runs = self.runs(j, row, range.length());
+                runs.iter().any(|run| self.is_pressed(j, row, run, range.length()))
             })
         })
+    }
+
+    /// Whether the multiplier of a bound is more of its size than the distance from the bound is of
+    /// the range, somewhere on a run: else it is what the barrier has left.
+    fn is_pressed(&self, j: usize, row: usize, run: &Run, range: f64) -> bool {
+        let problem = &self.located.chain.phases[j];
+        let values = path_values(problem, &self.located.outcome.phases[j].trajectory, row);
+        let (own, bounds) = (self.multipliers_of_row(j, row), problem.path_bounds[row]);
+        let gap = |value: f64| (value - bounds.lower).abs().min((value - bounds.upper).abs());
+        let farther = |k: usize| values[k..].iter().take(2).map(|it| gap(*it)).fold(0.0, f64::max);
+        let is_pressed = |k: usize| own[k].abs() * range / self.size(j) > farther(k) / range;
+        (run.first..run.behind).any(is_pressed)
     }
 
     /// Whether a run is what is left of an arc or a touch point at that end of the phase.
@@ -246,17 +277,30 @@ impl<'l> Contacts<'l> {
         }
     }
 
+    /// That of the Hamiltonian of a phase; of measured data, which say nothing of phases without
+    /// rows behind them, of all.
     pub(super) fn size(&self, j: usize) -> f64 {
-        self.located.outcome.phases[j].trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE)
+        let of = |j: usize| self.located.outcome.phases[j].trajectory.hamiltonian.scale;
+        let size = match self.model.sums.is_empty() {
+            true => of(j),
+            false => (0..self.located.outcome.phases.len()).map(of).fold(0.0, f64::max),
+        };
+        size.max(f64::MIN_POSITIVE)
     }
 
-    /// How far a limit goes up and down; on an arc, its condition is another one.
+    /// How far a limit goes up and down; on an arc, its condition is another one. One on which
+    /// controls act may be at its bound from the beginning to the end.
     fn range(&self, limit: usize) -> f64 {
         let mut range = Extent::default();
         for (j, phase) in self.located.structure.phases.iter().enumerate() {
             if phase.contacts[limit] == Arc::Free {
                 self.extend(&mut range, j, self.row(j, limit));
             }
+        }
+        if self.limits[limit].order == Some(0) {
+            let bounds = self.located.chain.phases[0].path_bounds[self.row(0, limit)];
+            let sizes = [bounds.lower, bounds.upper].into_iter().filter(|it| it.is_finite());
+            return sizes.fold(range.length(), |most, it| most.max(OF_BOUND * it.abs()));
         }
         range.length()
     }

@@ -3,10 +3,10 @@
 
 use super::start::Signals;
 use super::structure::Structure;
-use super::tuning::certificate::STATIONARY;
+use super::tuning::certificate::{NEARLY_STATIONARY, STATIONARY};
 use super::tuning::search::{
-    BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GRADES, INTERVALS, MOST_ITERATIONS, MOST_SOLVES,
-    TOLERANCE,
+    BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GRADES, INTERVALS, MOST_ITERATIONS, MOST_KNOTS,
+    MOST_SOLVES, NEAR_END, TOLERANCE,
 };
 use super::{Located, Search, Whole};
 use fdcc_compiler::{Model, PhaseOfModes, compile_chain, with_modes, with_modes_in_phases};
@@ -50,7 +50,13 @@ pub(super) struct Planned<'p> {
 }
 
 impl<'s> Search<'s> {
+    /// A stationary answer; nothing where none is found, or all work is spent.
     pub(super) fn solve(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
+        self.ended(structure, from).filter(|it| is_stationary(&it.outcome.solution))
+    }
+
+    /// Where the solve ended.
+    pub(super) fn ended(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
         let phases = self.among.map_or(1, |it| it.parts.len());
         self.spent.solves += 1;
         let is_spent =
@@ -69,8 +75,7 @@ impl<'s> Search<'s> {
         let start = start(&planned, &chain);
         let outcome = solve_chain(&chain, Some(start), &mut |_, _| (self.stop)()).ok()?;
         self.spent.work += outcome.solution.counts.iterations * intervals;
-        let joint = Joint { model, chain, outcome };
-        is_stationary(&joint.outcome.solution).then(|| self.located(joint, &planned))
+        Some(self.located(Joint { model, chain, outcome }, &planned))
     }
 
     /// All phases, in the order of the model.
@@ -218,15 +223,30 @@ pub(super) fn is_stationary(found: &NlpSolution) -> bool {
     }
 }
 
+/// Whether nothing more can be gained there that would count: where two switches come together the
+/// last digits are slow.
+pub(super) fn is_nearly_stationary(found: &NlpSolution) -> bool {
+    found.kkt_error.max(found.constraint_violation) <= NEARLY_STATIONARY
+}
+
 /// Gauss nodes keep off the ends of phases, where a surface is 0.
 fn with_polynomials(mut model: Model, planned: &[Planned]) -> Model {
-    polynomials(&mut model.method, 1.0, &planned[0].structure.phases[0]);
+    let Planned { part, structure, .. } = planned[0];
+    let knots = part.model.knots();
+    polynomials(
+        &mut model.method,
+        structure.ends(),
+        structure.ends(),
+        &structure.phases[0],
+        &knots,
+    );
     let mut phases = model.phases.iter_mut();
-    for Planned { structure, .. } in planned {
-        let [first, last] = structure.ends();
+    for Planned { part, structure, .. } in planned {
+        let knots = part.model.knots();
         let all = structure.phases.iter().zip(structure.times.windows(2)).zip(&mut phases);
         for ((own, pair), phase) in all {
-            polynomials(&mut phase.model.method, (pair[1] - pair[0]) / (last - first), own);
+            let method = &mut phase.model.method;
+            polynomials(method, structure.ends(), [pair[0], pair[1]], own, &knots);
         }
     }
     model
@@ -243,18 +263,42 @@ fn graded(intervals: usize) -> Grid {
     Grid::Mesh([0.0].into_iter().chain(inside).chain([1.0]).collect())
 }
 
-/// `part` is that of the whole time.
-fn polynomials(method: &mut Method, part: f64, phase: &PhaseOfModes) {
+/// Equal intervals, as far as the times inside of a phase allow at which formulas change.
+fn between(knots: &[f64], [first, last]: [f64; 2], intervals: usize) -> Grid {
+    let part = |knot: &f64| (knot - first) / (last - first);
+    let inside = knots.iter().map(part).filter(|it| (NEAR_END..1.0 - NEAR_END).contains(it));
+    let ends: Vec<f64> = [0.0].into_iter().chain(inside).chain([1.0]).collect();
+    if ends.len() == 2 || ends.len() > MOST_KNOTS {
+        return Grid::Uniform(intervals);
+    }
+    let mut all = vec![0.0];
+    for pair in ends.windows(2) {
+        let count = ((pair[1] - pair[0]) * intervals as f64).ceil().max(1.0) as usize;
+        let step = (pair[1] - pair[0]) / count as f64;
+        all.extend((1..count).map(|k| pair[0] + step * k as f64).chain([pair[1]]));
+    }
+    Grid::Mesh(all)
+}
+
+/// `ends` are those of the whole time, `own` those of the phase.
+fn polynomials(
+    method: &mut Method,
+    ends: [f64; 2],
+    own: [f64; 2],
+    phase: &PhaseOfModes,
+    knots: &[f64],
+) {
+    let part = (own[1] - own[0]) / (ends[1] - ends[0]);
     let finer = if method.controls == ControlShape::Linear { FINER } else { 1 };
-    let own = INTERVALS * part * f64::from(1 << phase.halvings);
-    let intervals = (own.round() as usize).max(FEWEST) * finer;
+    let count = INTERVALS * part * f64::from(1 << phase.halvings);
+    let intervals = (count.round() as usize).max(FEWEST) * finer;
     *method = Method {
         scheme: Scheme::Gauss(4),
         order: Order::Fixed,
         path_at_nodes: true,
         steps: 1,
         lagged: Vec::new(),
-        grid: if phase.is_graded { graded(intervals) } else { Grid::Uniform(intervals) },
+        grid: if phase.is_graded { graded(intervals) } else { between(knots, own, intervals) },
         tol: TOLERANCE,
         sigma: None,
         continuation: Vec::new(),

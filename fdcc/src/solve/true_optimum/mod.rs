@@ -26,6 +26,7 @@ mod range;
 mod repair;
 mod replayed;
 mod signs;
+mod simpler;
 mod start;
 mod structure;
 mod switches;
@@ -47,14 +48,14 @@ pub(crate) use tuning::certificate as certificate_limits;
 use fdcc_compiler::{Model, PhaseOfModes, limits};
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::{Chain, Problem};
-use fdcc_runtime::solve::ChainOutcome;
+use fdcc_runtime::solve::{ChainOutcome, Outcome};
 use insertion::Candidate;
-use joint::Among;
+use joint::{Among, is_nearly_stationary, is_stationary};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use structure::{NewArcs, Structure};
 use tuning::certificate::WORTH;
-use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, WORSE};
+use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, SMOOTHER, WORSE};
 
 /// A structure with its optimum.
 #[derive(Clone)]
@@ -130,17 +131,17 @@ pub(crate) fn locate(
     Some(located)
 }
 
-/// The same structure on intervals of half the length; nothing where these are short already.
-/// The arguments are those of [`locate`].
+/// The same structure on intervals of half the length; nothing where some were halved `most` times.
+/// The other arguments are those of [`locate`].
 pub(crate) fn on_half_intervals(
     [written, model]: [&Model; 2],
     problem: &Problem,
-    located: &Located,
+    (located, most): (&Located, u32),
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
     let mut search = Search { written, model, problem, among: None, stop, spent };
-    let finer = search.solve(located.structure.halved()?, &search.whole(located))?;
+    let finer = search.solve(located.structure.halved(most)?, &search.whole(located))?;
     let mut finer = Located { insertion: located.insertion, ..finer };
     search.compared(&mut finer);
     Some(finer)
@@ -174,8 +175,13 @@ impl Search<'_> {
             let whole = self.whole(&located);
             let may_rise = structure.conditions() > located.structure.conditions()
                 || structure.fineness() > located.structure.fineness();
+            let is_cut = structure.cuts() > located.structure.cuts();
             let better = self.solve(structure, &whole);
-            if let Some(better) = better.filter(|it| may_rise || !it.is_worse(&located)) {
+            let is_kept = |it: &Located| match is_cut {
+                true => !it.is_worse(&located) && self.is_smoother(it, &located),
+                false => may_rise || !it.is_worse(&located),
+            };
+            if let Some(better) = better.filter(is_kept) {
                 passed.push(std::mem::replace(&mut located, better));
             }
         }
@@ -213,11 +219,31 @@ impl Search<'_> {
         let (own, phases) = (&located.structure, &located.outcome.phases);
         let repaired = repair::better(self.model, self.problem, located).into_iter();
         let arcs = |which| own.with_arcs(Some((self.problem, which)), &contacts, phases);
+        let new = [arcs(NewArcs::All), arcs(NewArcs::Longest)].into_iter();
+        let new = new.chain([own.with_arcs(None, &contacts, phases)]);
         let all = repaired
-            .chain([arcs(NewArcs::All), arcs(NewArcs::Longest)])
-            .chain([own.with_arcs(None, &contacts, phases)])
-            .chain(repair::without_touches(own));
-        all.into_iter().find(|it| !tried.contains(&it.phases))
+            .chain(new.flat_map(|it| [it.without_overlaps(), it]))
+            .chain(repair::without_touches(own))
+            .chain(self.cuts(located, &contacts));
+        let mut all = all.map(|it| it.without_idle_touches(&contacts.limits));
+        all.find(|it| !tried.contains(&it.phases))
+    }
+
+    /// The structures in which controls may jump inside of a phase: where they are at a limit that
+    /// reads several of them, such as a disc, they may go from one end of it to the other.
+    fn cuts(&self, located: &Located, contacts: &Contacts) -> Vec<Structure> {
+        let own = &located.structure;
+        let ranges = ranges(&self.problem.controls, &located.outcome.phases);
+        let is_at_limit = |phase: &PhaseOfModes| {
+            let limits = contacts.limits.iter().zip(&phase.contacts);
+            limits.into_iter().any(|it| it.0.order == Some(0) && *it.1 != fdcc_compiler::Arc::Free)
+        };
+        let phases = own.phases.iter().zip(&located.outcome.phases).enumerate();
+        let limited = phases.filter(|(_, (phase, _))| is_at_limit(phase));
+        let cut = |(j, (_, outcome)): (usize, (&PhaseOfModes, &Outcome))| {
+            Some(own.with_cut(j, polynomials::jump(&ranges, &outcome.trajectory)?))
+        };
+        limited.filter_map(cut).collect()
     }
 
     /// Solves; where that fails, without arcs on holds, and then without ever longer phases: what a
@@ -297,6 +323,12 @@ impl Search<'_> {
         if is_new { self.solve(structure, &self.whole(located)) } else { None }
     }
 
+    /// Whether one answer is far more accurate than another, which is not as accurate as it should
+    /// be.
+    fn is_smoother(&self, one: &Located, other: &Located) -> bool {
+        self.roughness(one) < SMOOTHER * self.roughness(other)
+    }
+
     /// By how much trajectories are less accurate than they should be; 1 where they just are.
     fn roughness(&self, located: &Located) -> f64 {
         let all = located.structure.roughness(self.problem, &located.outcome.phases);
@@ -315,7 +347,11 @@ impl Search<'_> {
             own < its - least * its.abs().max(located.objective_size())
         };
         let whole = self.whole(located);
-        let Some(first) = self.solve(structure, &whole) else { return Trial::Unsolved };
+        let Some(first) = self.ended(structure, &whole) else { return Trial::Unsolved };
+        if !is_stationary(&first.outcome.solution) {
+            let is_told = is_nearly_stationary(&first.outcome.solution) && !is_better(&first);
+            return if is_told { Trial::NotBetter } else { Trial::Unsolved };
+        }
         // What is left out of it may have been worth little, but not nothing.
         let mended = self.mended(first.clone()).into_iter();
         let held = mended.chain([first]).find(is_better);

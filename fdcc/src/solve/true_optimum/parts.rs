@@ -43,17 +43,18 @@ pub(crate) fn locate_in_phases(
     Some(all)
 }
 
-/// The same structures on intervals of half the length; nothing where these are short already.
+/// The same structures on intervals of half the length; nothing where some were halved `most`
+/// times.
 pub(crate) fn halved_in_phases(
     whole: &Model,
     parts: &[Part],
-    all: Vec<Located>,
+    (all, most): (Vec<Located>, u32),
     stop: Watch,
     spent: &mut Spent,
 ) -> Option<Vec<Located>> {
     let mut phases = Phases { whole, parts, stop, spent };
     let halved: Vec<Structure> =
-        all.iter().map(|it| it.structure.halved()).collect::<Option<_>>()?;
+        all.iter().map(|it| it.structure.halved(most)).collect::<Option<_>>()?;
     let insertions: Vec<f64> = all.iter().map(|it| it.insertion).collect();
     let mut search = phases.search(0);
     let mut from = search.whole(&seen_from(all, 0));

@@ -1,7 +1,7 @@
 //! Controls that are polynomials on the intervals of a phase: what they do between their nodes.
 
 use super::range::Range;
-use super::tuning::polynomials::{AT_BOUND, PART_ROUGH, PARTS, ROUGH};
+use super::tuning::polynomials::{AT_BOUND, JUMP, PART_ROUGH, PARTS, ROUGH};
 use fdcc_compiler::Arc;
 use fdcc_runtime::lagrange;
 use fdcc_runtime::problem::Bounds;
@@ -73,6 +73,22 @@ pub(crate) fn beyond_bounds(ranges: &[Range], trajectory: &Trajectory) -> f64 {
         pieces.map(|it| it.violation(range.bounds) / range.width).fold(0.0, f64::max)
     };
     ranges.iter().enumerate().map(of).fold(0.0, f64::max)
+}
+
+/// Where a control changes most within an interval, if that is so much that it jumps there.
+pub(super) fn jump(ranges: &[Range], trajectory: &Trajectory) -> Option<f64> {
+    let mut largest = (JUMP, None);
+    for (at, Range { width, .. }) in ranges.iter().enumerate() {
+        let pieces = polynomials(trajectory, at);
+        for triple in pieces.windows(3) {
+            let [before, own, after] = triple else { unreachable!("windows of three") };
+            let change = (after.at(after.ends[0]) - before.at(before.ends[1])).abs() / width;
+            if change > largest.0 {
+                largest = (change, Some(0.5 * (own.ends[0] + own.ends[1])));
+            }
+        }
+    }
+    largest.1
 }
 
 /// Where a control is far from linear.

@@ -8,7 +8,7 @@ use super::tracks::Track;
 use super::tuning::repair::NOTHING;
 use super::tuning::structure::{
     AT_END, BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, LOSS, MOST_HALVINGS, SAME_SWITCH,
-    SHORT, SHORTEST, SHORTEST_ARC, TRIED, TRIED_BESIDE,
+    SHORTEST, SHORTEST_ARC, TRIED, TRIED_BESIDE,
 };
 use fdcc_compiler::{Arc, Mode, PhaseOfModes};
 use fdcc_runtime::problem::{ControlShape, Problem};
@@ -59,7 +59,9 @@ impl Structure {
         }
         times.push(last);
         times.sort_by(f64::total_cmp);
-        let is_coarse = problem.has_objective && !whole.is_exact;
+        // Of measured data the Hamiltonian does not tell how accurate a trajectory is.
+        let is_told = problem.has_objective && problem.measurements.is_empty();
+        let is_coarse = is_told && !whole.is_exact;
         let phase = |pair: &[f64]| {
             let middle = 0.5 * (pair[0] + pair[1]);
             PhaseOfModes {
@@ -71,6 +73,7 @@ impl Structure {
                 shape: ControlShape::Polynomial,
                 halvings: if is_coarse { 0 } else { HALVINGS },
                 is_graded: false,
+                is_cut: false,
             }
         };
         let phases = times.windows(2).map(phase).collect();
@@ -179,7 +182,7 @@ impl Structure {
             }
             if begin > time[0] {
                 own.touches.fill(Arc::Free);
-                own.jump = None;
+                (own.jump, own.is_cut) = (None, false);
             }
             for touch in contacts.touches.iter().filter(|it| (it.time - begin).abs() < 0.5 * step) {
                 own.touches[touch.limit] = touch.arc;
@@ -225,11 +228,11 @@ impl Structure {
         other
     }
 
-    /// With all intervals halved; nothing where they were halved often enough.
-    pub fn halved(&self) -> Option<Self> {
+    /// With all intervals halved; nothing where some were halved so often.
+    pub fn halved(&self, most: u32) -> Option<Self> {
         let mut other = self.clone();
         other.phases.iter_mut().for_each(|it| it.halvings += 1);
-        let is_too_fine = other.phases.iter().any(|it| it.halvings > MOST_HALVINGS);
+        let is_too_fine = other.phases.iter().any(|it| it.halvings > most);
         (!is_too_fine).then_some(other)
     }
 
@@ -247,41 +250,19 @@ impl Structure {
         self
     }
 
-    /// With free controls on holds; if they are free already, without the shortest phase as long as
-    /// that is short.
-    pub fn simpler(&self) -> Option<Self> {
-        let mut other = self.clone();
-        for phase in other.phases.iter_mut().filter(|it| it.modes.contains(&Mode::Held)) {
-            phase.arcs.fill(Arc::Free);
-        }
-        if other.phases != self.phases {
-            return Some(other.merged());
-        }
-        let durations = self.times.windows(2).map(|pair| pair[1] - pair[0]).enumerate();
-        let durations = durations.filter(|it| self.may_leave_out(it.0));
-        let shortest = durations.min_by(|a, b| a.1.total_cmp(&b.1))?;
-        let [first, last] = self.ends();
-        let is_short = shortest.1 < SHORT * (last - first);
-        is_short.then(|| self.without(shortest.0))
+    /// How often controls jump though nothing else changes.
+    pub fn cuts(&self) -> usize {
+        self.phases.iter().filter(|it| it.is_cut).count()
     }
 
-    /// With free controls throughout: what a smoothed layer, or a coarse grid, says of them need
-    /// not be so, and an arc that is too short to be seen may be what makes the others possible.
-    pub fn released(&self) -> Option<Self> {
+    /// With a time inside of a phase at which controls may jump.
+    pub fn with_cut(&self, j: usize, time: f64) -> Self {
         let mut other = self.clone();
-        other.phases.iter_mut().for_each(|it| it.arcs.fill(Arc::Free));
-        (other.phases != self.phases).then(|| other.merged())
-    }
-
-    /// With a limit released, or touched only where control acts on its second derivative at first.
-    pub fn without_contact(&self, j: usize, limit: usize) -> Self {
-        let mut other = self.clone();
-        let own = &mut other.phases[j];
-        match own.contacts[limit] {
-            Arc::Free => own.touches[limit] = Arc::Free,
-            _ => own.contacts[limit] = Arc::Free,
-        }
-        other.merged()
+        let mut own = PhaseOfModes { jump: None, is_cut: true, ..self.phases[j].clone() };
+        own.touches.fill(Arc::Free);
+        other.phases.insert(j + 1, own);
+        other.times.insert(j + 1, time);
+        other
     }
 
     /// With a short phase before another, or behind the last.
@@ -301,41 +282,6 @@ impl Structure {
         };
         other.phases.insert(before, phase);
         other.times.splice(before..=before, ends);
-        other
-    }
-
-    /// Whether a phase can be left out: the jumps before and behind it are not one upon the other,
-    /// and none is the first or the last thing to happen.
-    pub fn may_leave_out(&self, j: usize) -> bool {
-        let (own, next) = (self.phases[j].jump, self.phases.get(j + 1).map(|it| it.jump));
-        match next {
-            Some(next) => next.is_none() || j > 0 && own.is_none(),
-            None => j > 0 && own.is_none(),
-        }
-    }
-
-    /// Without a phase, whose time its neighbours share.
-    pub fn without(&self, j: usize) -> Self {
-        self.clone().without_phase(j).merged()
-    }
-
-    /// The same; neighbours that are alike stay two.
-    pub fn without_phase(self, j: usize) -> Self {
-        let mut other = self.clone();
-        let gone = other.phases.remove(j);
-        if let Some(next) = other.phases.get_mut(j).filter(|_| j > 0) {
-            next.begin_like(&gone);
-        }
-        let middle = 0.5 * (other.times[j] + other.times[j + 1]);
-        other.times.remove(j);
-        if j > 0 && j < other.phases.len() {
-            other.times[j] = middle;
-        } else if j == 0 {
-            other.times[0] = self.times[0];
-        } else {
-            let last = other.times.len() - 1;
-            other.times[last] = self.times[self.times.len() - 1];
-        }
         other
     }
 }

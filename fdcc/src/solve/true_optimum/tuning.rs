@@ -14,6 +14,10 @@ pub(super) mod search {
     pub(crate) const GRADES: i32 = 10;
     /// So many times as many where controls are linear on them.
     pub(crate) const FINER: usize = 4;
+    /// A time at which formulas change that is nearer than this to the end of a phase, for its
+    /// duration, is there; with more of them than so many intervals go over them.
+    pub(crate) const NEAR_END: f64 = 1e-6;
+    pub(crate) const MOST_KNOTS: usize = 500;
     /// The tolerance of each solve.
     pub(crate) const TOLERANCE: f64 = 1e-10;
     /// A solve that is begun has so many at least.
@@ -26,6 +30,9 @@ pub(super) mod search {
     pub(crate) const MOST_ROUNDS: usize = 4;
     /// A structure without new conditions is another optimum where the objective rises by so much.
     pub(crate) const WORSE: f64 = 1e-5;
+    /// Controls jump inside of a phase where its trajectory is wrong by less than this part of what
+    /// it was without.
+    pub(crate) const SMOOTHER: f64 = 0.1;
     /// An objective has to fall by so much of its size, or a phase is not worth having.
     pub(crate) const GAIN: f64 = 1e-9;
     /// The same where nothing but a trial says that it is: other intervals gain a little, too.
@@ -50,6 +57,8 @@ pub(super) mod structure {
     pub(crate) const TRIED: f64 = 0.01;
     /// But with no more than this part of the phases beside it.
     pub(crate) const TRIED_BESIDE: f64 = 0.2;
+    /// Arcs that follow each other may overlap by so much of the shorter one.
+    pub(crate) const OVERLAP: f64 = 0.25;
     /// Switches that are nearer than this part of a step are one.
     pub(crate) const SAME_SWITCH: f64 = 0.25;
     /// An arc that was not seen, of a control that is at its bound at an end, begins with this part
@@ -65,8 +74,11 @@ pub(super) mod structure {
     pub(crate) const BEYOND: f64 = 5e-7;
     /// Intervals are halved so often where nothing tells how accurate a trajectory is.
     pub(crate) const HALVINGS: u32 = 2;
-    /// Intervals are halved so often at most.
+    /// Intervals are halved so often at most where something is rough.
     pub(crate) const MOST_HALVINGS: u32 = 3;
+    /// All of them are halved so often where nothing is wrong but states and conditions of the
+    /// replay.
+    pub(crate) const MOST_OF_ALL: u32 = 5;
 }
 
 pub(super) mod polynomials {
@@ -75,6 +87,8 @@ pub(super) mod polynomials {
     /// A control that is nearer than this to its bound, for their distance, where a phase begins or
     /// ends may have an arc there.
     pub(crate) const AT_BOUND: f64 = 1e-6;
+    /// A control jumps where it changes by more than this part of its width within an interval.
+    pub(crate) const JUMP: f64 = 0.5;
     /// A control that is farther than this from a straight line, for the distance of its bounds, on
     /// such a part of the intervals is rough.
     pub(crate) const ROUGH: f64 = 0.01;
@@ -96,6 +110,11 @@ pub(super) mod contacts {
     /// A limit is near its bound where it is nearer than this part of its range, at one end of an
     /// interval.
     pub(crate) const NEAR_BOUND: f64 = 0.02;
+    /// A path condition on which controls act at once has this part of its bound as its range at
+    /// least.
+    pub(crate) const OF_BOUND: f64 = 0.1;
+    /// It is at its bound where all of its values are nearer than this part of its range.
+    pub(crate) const SEEN: f64 = 1e-7;
     /// A limit with two derivatives or more that is active on fewer intervals is touched.
     pub(crate) const FEWEST_OF_ARC: usize = 4;
     /// Where the motion is on a surface for so many intervals, it is held.
@@ -153,6 +172,8 @@ pub(super) mod minimum {
 pub(crate) mod certificate {
     /// An answer whose optimality error is larger is none.
     pub(crate) const STATIONARY: f64 = 1e-7;
+    /// What a trial has gained is known where its optimality error is not larger.
+    pub(crate) const NEARLY_STATIONARY: f64 = 1e-5;
     /// A hold is tried where the objective falls with its duration by more than this, for the size
     /// of the Hamiltonian.
     pub(crate) const WORTH: f64 = 1e-5;
@@ -166,6 +187,9 @@ pub(crate) mod certificate {
     /// The replay may differ by so much, for how far each state moves; so may conditions and bounds
     /// be violated.
     pub(crate) const REPLAYED: f64 = 1e-6;
+    /// This part of the sum of the squares of all measurements is a size of an objective of them:
+    /// what a thousandth of each makes.
+    pub(crate) const MEASURED: f64 = 1e-6;
     /// So may a replay of controls that come a moment earlier or later.
     pub(crate) const TIMING: f64 = 1e-2;
     /// Inside of a phase the Hamiltonian of an autonomous system may change by so much of its size.

@@ -1,8 +1,8 @@
 //! An answer in the words of the model that has the kinks.
 
-use crate::solve::found::Phases;
-use crate::solve::true_optimum::Stretch;
-use crate::solve::{Compiled, Solution};
+use super::found::Phases;
+use super::true_optimum::Stretch;
+use super::{Compiled, Solution};
 use fdcc_compiler::{is_kink, side_of};
 use fdcc_runtime::problem::{Chain, Function, Problem};
 use fdcc_runtime::solution::{ChainOutcome, Outcome, Trajectory};

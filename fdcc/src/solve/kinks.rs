@@ -4,9 +4,8 @@
 //! one of both is 0 at all times; then the controls that the model has are an optimum of it, as
 //! what it allows is a part of what was allowed. Where neither is, `q (q + e)` gets a price.
 
-mod gaps;
-mod words;
-
+use super::kink_gaps::{first_price, is_tight};
+use super::kink_words::in_words_of;
 use super::report::{Options, Start};
 use super::tuning::kinks::{EXACT, HIGHER, MOST_PRICES};
 use super::{Compiled, Solution};
@@ -16,10 +15,6 @@ use crate::record::Record;
 use crate::verification::Verification;
 use fdcc_compiler::{Kinks, is_kink};
 use fdcc_runtime::nlp::Status;
-use gaps::first_price;
-use words::in_words_of;
-
-pub(super) use gaps::is_tight;
 
 /// The answer in the words of the model with its kinks; nothing where it is to be solved as it is.
 pub(super) fn solve(

@@ -1,8 +1,8 @@
 //! By how much what stands for kinks is larger than it has to be, and what that costs.
 
-use crate::solve::Solution;
-use crate::solve::shown::path_conditions;
-use crate::solve::tuning::kinks::{LOOSE, NOTHING, PRICE, ROUNDING, TIGHT};
+use super::Solution;
+use super::shown::path_conditions;
+use super::tuning::kinks::{LOOSE, NOTHING, PRICE, ROUNDING, TIGHT};
 use fdcc_compiler::is_kink;
 use fdcc_runtime::problem::{Columns, Problem, Variable};
 use fdcc_runtime::solution::Trajectory;
@@ -83,7 +83,7 @@ fn gaps_of_ends(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
 
 /// Whether one of the two conditions on each unknown that stands for a kink is an equality: at all
 /// times, or on average where controls are known by their means on intervals only.
-pub(in crate::solve) fn is_tight(problem: &Problem, trajectory: &Trajectory) -> bool {
+pub(super) fn is_tight(problem: &Problem, trajectory: &Trajectory) -> bool {
     gaps(problem, trajectory).iter().all(Gap::is_none)
 }
 

@@ -1,0 +1,110 @@
+//! Fits of systems with friction and impacts: every switch is located, and rows go from one part of
+//! time to the next with it.
+
+use fdcc::{DataFiles, Model, Options, Solution};
+use std::f64::consts::FRAC_PI_2;
+use std::fmt::Write;
+
+fn model(path: &str) -> Model {
+    let path = fdcc_tests::repository().join(path);
+    Model::from_file(&path.display().to_string()).expect("it has no mistake")
+}
+
+fn certified(model: &Model) -> Solution {
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    assert!(solution.is_certified(), "{:?}", solution.certificate);
+    solution
+}
+
+fn assert_near(solution: &Solution, expected: &[(&str, f64)], tolerance: f64) {
+    for (name, value) in expected {
+        let found = match *name {
+            "objective" => solution.objective(),
+            name => solution.unknowns().find(|it| it.0 == name).expect("it is unknown").1,
+        };
+        let off = (found - value).abs() / value.abs();
+        assert!(off < tolerance, "{name}: {found} instead of {value}");
+    }
+}
+
+/// By `scipy.optimize.least_squares` over the closed form of the motion: `v = a t - b t^2` until it
+/// is 0.
+#[test]
+fn friction_and_mass_are_those_of_the_true_motion() {
+    let solution = certified(&model("models/slider_fit.fdc"));
+    let expected = [("objective", 42.020_119_385_05), ("mu", 0.302_211_36), ("m", 1.988_294_47)];
+    assert_near(&solution, &expected, 1e-8);
+    let estimates = solution.estimates().expect("it is a fit");
+    let [x, v] = &estimates.residuals[..] else { panic!("two signals were measured") };
+    assert_eq!([x.values.len(), v.values.len()], [21, 21]);
+    assert!(x.time.is_sorted() && x.time.len() == 21);
+    assert!((estimates.sum_of_squares - solution.objective()).abs() < 1e-9);
+    let replayed = solution.verify().expect("it can be replayed").simulation.objective;
+    assert!((replayed.expect("it has one") - solution.objective()).abs() < 1e-7);
+}
+
+/// The same of a block that is pushed to and fro, of which `tests/classics/fits` has the values.
+#[test]
+fn a_force_through_measured_points_bends_where_intervals_meet() {
+    let read = |name: &str| {
+        let path = fdcc_tests::repository().join("tests/classics/fits").join(name);
+        std::fs::read_to_string(path).expect("it is there")
+    };
+    let (text, data) = (read("slider_friction.fdc"), read("slider_friction.csv"));
+    let method = text.lines().find(|it| it.starts_with("method")).expect("it names a width");
+    let solution = certified(&with_data(&text.replace(method, ""), move |_| data.clone()));
+    let expected = [("objective", 1.538_611_63e-4), ("mu", 0.250_201_184), ("v0", 1.201_914_60)];
+    assert_near(&solution, &expected, 2e-8);
+}
+
+#[test]
+fn bounces_are_located_where_heights_are_measured() {
+    let solution = certified(&model("tests/classics/fits/bouncing_ball.fdc"));
+    let expected =
+        [("objective", 6.401_697_936_25e-4), ("e", 0.748_916_410_79), ("v0", 0.303_184_110_579)];
+    assert_near(&solution, &expected, 1e-8);
+    assert_eq!(solution.jumps.len(), 2);
+    assert_eq!(solution.estimates().expect("it is a fit").rows, 35);
+}
+
+/// Two runs of `x'' = -4 x - 0.5 Sgn(x')`: half cycles of a cosine about +-1/8, each 1/4 smaller.
+#[test]
+fn runs_with_dry_friction_share_their_unknowns() {
+    let phase = |name: &str, start: f64| {
+        format!(
+            "phase {name} {{ time t in [0, 3]  state x start {start}  state v start 0
+                surface slip = v
+                dynamics {{ x' = v  v' in -k*x - f*Sgn(slip) }} }}
+             fit {name}_rows: {name}.x sd 0.01\n"
+        )
+    };
+    let text = format!(
+        "data one_rows = csv(\"one.csv\") columns t, x
+         data two_rows = csv(\"two.csv\") columns t, x
+         free k in [1, 10] guess 3.7\nfree f in [0, 2] guess 0.45\n{}{}",
+        phase("one", 1.4),
+        phase("two", -1.1)
+    );
+    let rows = |path: &str| measured(if path == "one.csv" { 1.4 } else { -1.1 });
+    let solution = certified(&with_data(&text, rows));
+    assert_near(&solution, &[("k", 4.0), ("f", 0.5)], 1e-8);
+    assert_eq!(solution.estimates().expect("it is a fit").rows, 42);
+}
+
+fn with_data(text: &str, rows: impl Fn(&str) -> String + Send + Sync + 'static) -> Model {
+    let files = DataFiles::from(move |path: &str| Ok(rows(path)));
+    fdcc::check_with("fit", text.into(), Some(files)).model.expect("it has no mistake")
+}
+
+fn measured(start: f64) -> String {
+    let mut rows = String::from("t,x\n");
+    for row in 0..=20 {
+        let t = 0.15 * f64::from(row);
+        let half = (t / FRAC_PI_2).floor();
+        let size = start.abs() - 0.25 * half;
+        let side = if half % 2.0 == 0.0 { start.signum() } else { -start.signum() };
+        let x = side * (0.125 + (size - 0.125) * (2.0 * (t - half * FRAC_PI_2)).cos());
+        writeln!(rows, "{t:e},{x:e}").expect("a string has room");
+    }
+    rows
+}

@@ -27,6 +27,8 @@ CHAPTERS = {
         "tests/classics/switched/uphill_soon": [],
         "tests/classics/switched/turn_round": [],
         "tests/classics/switched/two_contacts": [],
+        "tests/classics/switched/power_limit": [],
+        "tests/classics/switched/speed_limit": [],
         "models/racecar": ["pos.y", "over", "pos.x"],
     },
     "Switches and relays": {
@@ -45,6 +47,7 @@ CHAPTERS = {
     "Impacts and phases": {
         "models/bounce": ["h", "over", "x"],
         "tests/classics/switched/wall": [],
+        "tests/classics/switched/ricochet": [],
         "tests/classics/phases/gear_shift": [],
         "tests/classics/phases/hopper": [],
         "tests/classics/phases/walker": [],
@@ -52,6 +55,8 @@ CHAPTERS = {
     },
     "Measured data": {
         "models/slider_fit": ["x", "v"],
+        "tests/classics/fits/bouncing_ball": [],
+        "tests/classics/fits/damped_oscillator": [],
     },
     "Smooth problems": {
         "tests/classics/brachistochrone": ["pos.y", "over", "pos.x"],

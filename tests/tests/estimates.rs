@@ -367,3 +367,24 @@ fn a_fit_is_simulated_and_not_differentiated_yet() {
     assert!(refused[0].message.contains("differentiated"), "{refused:#?}");
     assert!(refused[0].labels[0].text.starts_with("understood by `solve`"), "{refused:#?}");
 }
+
+/// An active condition forbids a direction as an equation does.
+#[test]
+fn an_active_inequality_counts_as_an_equation() {
+    let rows = "t,x\n0.2,0.3\n0.5,0.8\n1,1.1\n1.5,1.9\n2,2.3\n";
+    let fitted = |end: &str| {
+        let text = format!(
+            "data obs = csv(\"a.csv\") columns t, x\nfree a in [0, 9] guess 1\n\
+             time t in [0, 2]\nstate x start free in [-1, 1]\ndynamics {{ x' = a }}\n\
+             end x {end} 2\nfit obs: x sd 0.1"
+        );
+        let files = DataFiles::from(|_| Ok(rows.to_owned()));
+        let model = fdcc::check_with("a test", text.into(), Some(files)).model.expect("right");
+        model.solve(&Options::default()).expect("it can be solved").estimates().expect("a fit")
+    };
+    let (equal, active) = (fitted("=="), fitted("<="));
+    assert_eq!(equal.degrees_of_freedom, Some(4));
+    assert_eq!(active.degrees_of_freedom, equal.degrees_of_freedom);
+    let [a, b] = [&equal, &active].map(|it| it.unknowns[0].standard_error.expect("it has one"));
+    assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
+}

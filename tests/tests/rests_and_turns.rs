@@ -149,3 +149,17 @@ fn a_link_that_reads_a_control_contradicts_no_optimum() {
     let checks = solution.optimality(None);
     assert!(checks.iter().all(|it| !it.contradicts()), "{checks:?}");
 }
+
+/// Less of the last bounce would be better: that it still happens at the last time is a condition
+/// of its sequence, which nobody wrote.
+#[test]
+fn a_jump_at_the_last_time_is_no_optimum() {
+    let text = "free e in [0.3, 0.95] guess 0.35  time t in [0, 1]
+        state h start 1.5  state v start 0  control u in [-1, 1]  surface ground = h
+        dynamics { h' = v  v' = -9.81 + u }
+        jump bounce on ground falling at most 2 { v := -e*v }
+        minimize integral(u^2) + 3*sqrt((e - 0.8)^2)";
+    let model = Model::from_text("bounce", text).expect("it is right");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    assert!(!solution.is_certified() || solution.objective() < 1e-6, "{}", solution.objective());
+}

@@ -170,7 +170,9 @@ pub fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
             "the objective falls with a hold at a switch by {figure} of its size per time (limit \
              {limit})"
         ),
-        "contacts" if is_unknown => "the motion is kept from the surface of a jump".into(),
+        "contacts" if is_unknown => {
+            "the motion is kept from the surface of a jump, or on it in the end".into()
+        }
         "replayed" if is_unknown => "the replay does not reach the end".into(),
         "contacts" => format!(
             "the multiplier of a limit at its bound has the wrong sign by {figure} (limit {limit})"

@@ -85,7 +85,7 @@ impl Estimates {
         lines.extend(self.unknowns.0.iter().map(|(name, it)| self.estimate(name, it, document)));
         lines.extend(self.undetermined.iter().map(|names| undetermined(names)));
         if !self.is_minimum {
-            let why = "the answer is no strict minimum, so nothing has a standard error";
+            let why = "a strict minimum could not be shown, so nothing has a standard error";
             lines.push(format!(" est   {why}"));
         }
         lines

@@ -8,7 +8,7 @@
 //! same where it holds as an equality.
 
 use super::bent::{Tried, replaced};
-use crate::expressions::graph::builtins::{Builtin, is_sum_of_squares};
+use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::model::{Constraint, Range};
@@ -57,4 +57,16 @@ pub(super) fn sides(graph: &mut Graph, symbols: usize, row: &Constraint) -> Opti
         values = sides.map(with).concat();
     }
     Some(values)
+}
+
+/// Whether the root of an expression is a length.
+fn is_sum_of_squares(graph: &Graph, id: ExprId) -> bool {
+    if let Some(&[a, b]) = graph.as_call(id, Builtin::Add) {
+        return is_sum_of_squares(graph, a) && is_sum_of_squares(graph, b);
+    }
+    let Some(&[a, b]) = graph.as_call(id, Builtin::Mul) else { return false };
+    let is_scaled = |scale: ExprId, of: ExprId| {
+        graph.as_number(scale).is_some_and(|it| it > 0.0) && is_sum_of_squares(graph, of)
+    };
+    a == b || is_scaled(a, b) || is_scaled(b, a)
 }

@@ -38,6 +38,7 @@ impl Model {
             least += (slope * bounds.lower).min(slope * bounds.upper);
             (inputs[input as usize], is_chosen) = (0.0, true);
         }
-        is_chosen && !(least + evaluate(&graph, &[duration], &inputs, &[])[0] > 0.0)
+        let rest = evaluate(&graph, &[duration], &inputs, &[])[0];
+        is_chosen && (least + rest <= 0.0 || (least + rest).is_nan())
     }
 }

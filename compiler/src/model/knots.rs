@@ -12,9 +12,9 @@ impl Model {
         let mut roots: Vec<ExprId> = self.states.iter().map(|it| it.rate).collect();
         roots.extend(self.integrals.iter().map(|it| it.integrand));
         let choices = self.graph.reachable(&roots).into_iter();
-        let knot = |id: ExprId| match self.graph.as_call(id, Builtin::SelectLe)? {
-            &[a, b, ..] if is_time(a) => self.graph.as_number(b),
-            &[a, b, ..] if is_time(b) => self.graph.as_number(a),
+        let knot = |id: ExprId| match *self.graph.as_call(id, Builtin::SelectLe)? {
+            [a, b, ..] if is_time(a) => self.graph.as_number(b),
+            [a, b, ..] if is_time(b) => self.graph.as_number(a),
             _ => None,
         };
         let mut knots: Vec<f64> = choices.filter_map(knot).collect();

@@ -53,6 +53,7 @@ pub(crate) const KEYS: &[Key] = &[
         set: |m, given| {
             let Given::Word(word) = given else { return None };
             m.kernel = kernels::find(word)?.name.into();
+            m.names_kernel = true;
             Some(())
         },
     },
@@ -323,6 +324,7 @@ pub fn default_method() -> Method {
         names_tolerance: false,
         names_grid: false,
         names_scheme: false,
+        names_kernel: false,
         order: Order::Fixed,
         tolerance: 1e-3,
         lagged: Vec::new(),

@@ -38,7 +38,7 @@ const ROWS: &[Row] = &[
         Kind::OfVectors,
         "norm",
         &["a"],
-        "Length of a vector: `sqrt(dot(a, a))`. Its derivative is not unique at 0, and taken as 0.",
+        "Length of a vector: `sqrt(dot(a, a))`. Its derivative is not unique at 0.",
     ),
     row(Kind::OfVectors, "normsq", &["a"], "Square of the length of a vector, smooth everywhere."),
     row(

@@ -45,7 +45,7 @@ pub struct Estimates {
     /// How many measurements there are.
     pub rows: usize,
     /// How many there are more than directions in which the answer could change; none if there are
-    /// no more, and where the answer is no strict minimum.
+    /// no more, and where the answer was not shown to be a strict minimum.
     pub degrees_of_freedom: Option<usize>,
     /// Sum of the squares of all residuals.
     pub sum_of_squares: f64,
@@ -55,8 +55,8 @@ pub struct Estimates {
     /// Whether the standard deviations of the measurements are known; else they are taken from what
     /// remains.
     pub is_known: bool,
-    /// Whether the answer is a strict minimum in what the data determine and no bound holds; else
-    /// nothing has a standard error.
+    /// Whether the answer was shown to be a strict minimum in what the data determine and no bound
+    /// holds; else nothing has a standard error.
     pub is_minimum: bool,
 }
 

@@ -3,16 +3,18 @@
 use super::Solution;
 use super::timing::gap_of_a_moment;
 use super::true_optimum::certificate_limits::{
-    CONTACT, GAIN, HAMILTONIAN, MEASURED, MODES, REPLAYED, STATIONARY, TIMING, WORTH, WRONG_SIGN,
+    CONTACT, GAIN, HAMILTONIAN, MEASURED, MODES, REPLAYED, SEEN, STATIONARY, TIMING, WORTH,
+    WRONG_SIGN,
 };
 use super::true_optimum::{
-    Certificate, Check, Contacts, Located, Stretch, beyond_bounds, is_attracted, ranges, variation,
-    wrong_sign,
+    Certificate, Check, Contacts, Located, Range, Stretch, beyond_bounds, is_attracted,
+    jumps_in_the_end, ranges, variation, wrong_sign,
 };
 use crate::verification::{Stay, Verification, modes};
 use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, limits};
 use fdcc_runtime::problem::{Problem, Variable};
 use fdcc_runtime::solution::modes::Span;
+use fdcc_runtime::solve::Outcome;
 
 /// Of a located answer with its replay; `model` is what holds between jumps, `between` the smoothed
 /// problem of that.
@@ -83,7 +85,8 @@ pub(super) fn size_of_objective(located: &Located, model: &Model) -> f64 {
 fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
     let contacts = Contacts::new(model, located);
     let wrong = contacts.wrong_sign().map_or(0.0, |it| it.part.max(0.0));
-    if between.has_objective && contacts.is_at_jump() { f64::INFINITY } else { wrong }
+    let is_kept = contacts.is_at_jump() || jumps_in_the_end(&located.structure);
+    if between.has_objective && is_kept { f64::INFINITY } else { wrong }
 }
 
 /// What each control does, and each state and path condition that is at a bound anywhere; where it
@@ -91,8 +94,13 @@ fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
 fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec<Stretch>)> {
     let controls = between.controls.iter().enumerate();
     let contacts = Contacts::new(model, located);
+    let ranges = ranges(&between.controls, &located.outcome.phases);
     let of_control = |(at, it): (usize, &Variable)| {
-        (it.name.clone(), stretches(located, &|_, phase| [phase.arcs[at], Arc::Free]))
+        let seen = |j: usize, arc: Arc| match arc {
+            Arc::Free => seen_arc(&located.outcome.phases[j], at, &ranges[at]),
+            arc => arc,
+        };
+        (it.name.clone(), stretches(located, &|j, phase| [seen(j, phase.arcs[at]), Arc::Free]))
     };
     let mut all: Vec<(String, Vec<Stretch>)> = controls.map(of_control).collect();
     let mut conditions = model.path.iter();
@@ -107,6 +115,18 @@ fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec
         }
     }
     all
+}
+
+/// What a control does throughout a phase, by its values at the nodes.
+fn seen_arc(phase: &Outcome, control: usize, Range { bounds, width, .. }: &Range) -> Arc {
+    let Some(nodes) = &phase.trajectory.nodes else { return Arc::Free };
+    let is_at =
+        |bound: f64| nodes.values[control].iter().all(|it| (it - bound).abs() < SEEN * width);
+    match () {
+        () if is_at(bounds.lower) => Arc::Lower,
+        () if is_at(bounds.upper) => Arc::Upper,
+        () => Arc::Free,
+    }
 }
 
 /// From what each phase has along it, and where it begins.

@@ -46,9 +46,11 @@ use crate::model::{Model, frame};
 use crate::record::Record;
 use crate::warm_start;
 use fdcc_compiler::Kinks;
+use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Linear, Method, Problem, often_called};
 use fdcc_runtime::transcribe::{conditions, unknowns};
 use found::Found;
+use tuning::search::OTHER_KERNEL;
 
 /// A model with the problem that is solved for it.
 ///
@@ -149,7 +151,8 @@ impl Compiled {
     /// Solves; once more in other units where numbers turn out to be far smaller than one of
     /// theirs.
     fn solve_as_it_is(&self, options: &Options) -> Result<Solution, Error> {
-        magnitudes::with_own_magnitudes(self.solve_once(options)?, options)
+        let first = self.with_other_kernel(self.solve_once(options)?, options)?;
+        magnitudes::with_own_magnitudes(first, options)
     }
 
     /// In three ways: time is divided at jumps and at conditions between the ends, and the chain of
@@ -178,11 +181,29 @@ impl Compiled {
             Start::Later(it) => Some(it.as_later_start(&self.chain)),
         };
         let mut found = multistart::solve(&self.chain, start, options, Part::default())?;
-        if !meaning.phases.is_empty() {
-            return Ok(located_in_phases::solution(&self.model, found, options));
+        Ok(match meaning.phases.is_empty() {
+            true => {
+                let others = found.other_singles();
+                families::best(&self.model, found.into_single(), others, options)
+            }
+            false => located_in_phases::solution(&self.model, found, options),
+        })
+    }
+
+    /// What is certified near the answer with another kernel, where nothing is near that with the
+    /// one of our choice: layers of another shape show other arcs and holds.
+    fn with_other_kernel(&self, first: Solution, options: &Options) -> Result<Solution, Error> {
+        let meaning = self.model.meaning();
+        let is_lost = matches!(first.status(), Status::IterationLimit | Status::NumericalFailure);
+        let is_missing = first.certificate.as_ref().is_some_and(|it| !it.is_certified());
+        let is_ours = !meaning.method.names_kernel && !self.model.names_its_discretisation();
+        let is_switched = !meaning.surfaces.is_empty() && (is_lost || is_missing);
+        if !is_ours || !is_switched || (options.stop)().is_break() {
+            return Ok(first);
         }
-        let others = found.other_singles();
-        Ok(families::best(&self.model, found.into_single(), others, options))
+        let other = self.model.with_method("kernel", OTHER_KERNEL)?;
+        let second = other.compile_as_it_is(None)?.solve_once(options)?;
+        Ok(if second.is_certified() { second } else { first })
     }
 
     /// Where time is divided at certain times, or at jumps.

@@ -36,6 +36,12 @@ pub(super) mod kinks {
     pub(crate) const EXACT: f64 = 1e-8;
 }
 
+pub(super) mod search {
+    /// Where nothing is certified near the layers of the kernel of our choice: one whose layers
+    /// have no edges.
+    pub(crate) const OTHER_KERNEL: &str = "sqrt";
+}
+
 pub(super) mod optimality {
     /// The Hamiltonian may be off by so much of the size of its terms.
     pub(crate) const OFF: f64 = 0.4;

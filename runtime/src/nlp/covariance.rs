@@ -22,7 +22,7 @@ use super::tuning::covariance::{CLOSE, HARD, LEAST, NEAR, SMALL, SOFT, TINY};
 use super::{Derivatives, Nlp, Solution};
 use crate::linalg::dense::eigen::eigen;
 use crate::linalg::solvers::{Structure, prepare};
-use crate::linalg::{Factor, Inertia};
+use crate::linalg::{Factor, Inertia, Triplets};
 use crate::problem::{Bounds, Linear};
 use std::ops::Range;
 
@@ -132,6 +132,8 @@ struct System {
     sigma: Vec<f64>,
     /// What inequalities add to the diagonal of their rows.
     d: Vec<f64>,
+    /// How many conditions are inequalities that are active somewhere.
+    active: usize,
     fixed: Vec<bool>,
     equality: Vec<bool>,
     of: Range<usize>,
@@ -170,10 +172,18 @@ impl System {
         let lower = |i: usize| side(i, v[i] - bounds[i].lower, multipliers.lower[i]);
         let upper = |i: usize| side(i, bounds[i].upper - v[i], multipliers.upper[i]);
         let sigma = (0..v.len()).map(|i| lower(i) + upper(i)).collect();
+        let terms = sizes_of_rows(nlp.jacobian_structure(), &derivatives.jacobian, v, values.len());
         let rows = nlp.constraint_bounds().iter().zip(&values).zip(&multipliers.constraints);
-        let d = rows.map(|((bounds, value), lambda)| slack(bounds, *value, *lambda, worth));
-        let d = d.collect();
-        System { factor, derivatives, bounds, sigma, d, fixed, equality, of }
+        let d = rows.zip(terms).map(|(((bounds, value), lambda), terms)| {
+            slack(bounds, (*value, terms), *lambda, worth)
+        });
+        let d: Vec<f64> = d.collect();
+        let is_active = |row: &usize| !equality[*row] && d[*row] < 1.0 / TINY;
+        let active = (0..d.len()).filter(is_active).map(|row| nlp.constraint_place(row).origin);
+        let mut active: Vec<String> = active.map(|it| it.label.to_string()).collect();
+        active.sort();
+        active.dedup();
+        System { factor, derivatives, bounds, sigma, d, active: active.len(), fixed, equality, of }
     }
 
     /// Which variables a bound holds, whose springs become hard; none if the inertia is wrong with
@@ -216,12 +226,13 @@ impl System {
     }
 
     /// How many variables may change at will: those that are neither fixed nor held, less the
-    /// equations.
+    /// equations and the inequalities that are active. One that is so at several times forbids one
+    /// direction at least.
     fn directions(&self, is_at_bound: &[bool]) -> usize {
         let held = self.of.clone().zip(is_at_bound).filter(|(i, held)| **held && !self.fixed[*i]);
         let variables = self.fixed.iter().filter(|it| !**it).count();
         let equations = self.equality.iter().filter(|it| **it).count();
-        variables.saturating_sub(equations + held.count())
+        variables.saturating_sub(equations + self.active + held.count())
     }
 }
 
@@ -233,14 +244,27 @@ fn spring(distance: f64, multiplier: f64, (size, worth): (f64, f64)) -> f64 {
     if distance.is_finite() && is_active { multiplier / distance } else { 0.0 }
 }
 
-/// `distance / z` of a row from the bound that its multiplier belongs to.
-fn slack(bounds: &Bounds, value: f64, multiplier: f64, worth: f64) -> f64 {
+/// For each row the largest of its terms, as far as it is linear.
+fn sizes_of_rows(structure: &Triplets, jacobian: &[f64], v: &[f64], rows: usize) -> Vec<f64> {
+    let mut sizes = vec![0.0_f64; rows];
+    for ((row, column), slope) in structure.entries().zip(jacobian) {
+        sizes[row] = sizes[row].max((slope * v[column]).abs());
+    }
+    sizes
+}
+
+/// `distance / z` of a row from the bound that its multiplier belongs to; with its value stands the
+/// size of its terms.
+fn slack(bounds: &Bounds, (value, terms): (f64, f64), multiplier: f64, worth: f64) -> f64 {
     if bounds.is_equality() {
         return 0.0;
     }
     let distance = if multiplier > 0.0 { bounds.upper - value } else { value - bounds.lower };
-    let spring = spring(distance, multiplier.abs(), (value.abs(), worth));
-    1.0 / spring.max(TINY)
+    let size = value.abs().max(terms).max(TINY);
+    let spring = spring(distance, multiplier.abs(), (size, worth));
+    // Rows may say the same: an arc of a state that rests. As hard as that they can be told apart.
+    let hardest = HARD * worth / (size * size);
+    1.0 / spring.min(hardest).max(TINY)
 }
 
 #[cfg(test)]

@@ -64,6 +64,8 @@ pub struct Method {
     pub names_grid: bool,
     /// Whether the scheme is written.
     pub names_scheme: bool,
+    /// Whether the kernel is written.
+    pub names_kernel: bool,
     /// Integration steps in each control interval.
     pub steps: usize,
     /// Smoothing width, if the model names one.

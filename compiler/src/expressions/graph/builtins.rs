@@ -245,18 +245,12 @@ table! {
     };
     Sqrt = Row {
         name: "sqrt",
-        doc: "Square root. `sqrt(9) = 3`. Its derivative is infinite at 0; that of a length, \
-              `sqrt(x^2 + y^2)`, is taken as 0 there.",
+        doc: "Square root. `sqrt(9) = 3`. Its derivative is infinite at 0.",
         domain: Domain::NonNegative(0),
         value: |a| a[0].sqrt(),
-        partial: |g, call, a, _| {
+        partial: |g, call, _, _| {
             let reciprocal = g.reciprocal(call);
-            let slope = g.scale(0.5, reciprocal);
-            if !is_sum_of_squares(g, a[0]) {
-                return slope;
-            }
-            let zero = g.number(0.0);
-            g.select_le(a[0], zero, zero, slope)
+            g.scale(0.5, reciprocal)
         },
         lowering: Lowering::Inline(Inline::Sqrt),
         ..FUNCTION
@@ -508,18 +502,6 @@ library! {
     cosh cosh();
     powf powf(y);
     atan2 atan2(y);
-}
-
-/// Whether the root of an expression is a length.
-pub(crate) fn is_sum_of_squares(graph: &Graph, id: ExprId) -> bool {
-    if let Some(&[a, b]) = graph.as_call(id, Builtin::Add) {
-        return is_sum_of_squares(graph, a) && is_sum_of_squares(graph, b);
-    }
-    let Some(&[a, b]) = graph.as_call(id, Builtin::Mul) else { return false };
-    let is_scaled = |scale: ExprId, of: ExprId| {
-        graph.as_number(scale).is_some_and(|it| it > 0.0) && is_sum_of_squares(graph, of)
-    };
-    a == b || is_scaled(a, b) || is_scaled(b, a)
 }
 
 #[cfg(test)]

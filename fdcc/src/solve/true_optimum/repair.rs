@@ -43,6 +43,13 @@ pub(super) fn without_touches(structure: &Structure) -> Vec<Structure> {
     touches.filter(|j| structure.may_leave_out(*j)).map(|j| structure.without(j)).collect()
 }
 
+/// Whether a jump happens at the very last time: that it happens at all would be a condition that
+/// nobody wrote.
+pub(crate) fn jumps_in_the_end(structure: &Structure) -> bool {
+    let last = structure.phases.len() - 1;
+    structure.phases[last].jump.is_some() && is_nothing(structure, last)
+}
+
 /// Whether a phase has no length.
 fn is_nothing(structure: &Structure, j: usize) -> bool {
     let [first, last] = structure.ends();

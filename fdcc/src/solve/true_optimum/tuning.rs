@@ -190,6 +190,8 @@ pub(crate) mod certificate {
     /// This part of the sum of the squares of all measurements is a size of an objective of them:
     /// what a thousandth of each makes.
     pub(crate) const MEASURED: f64 = 1e-6;
+    /// A control that is nearer than this part of its width to a bound throughout a phase is there.
+    pub(crate) const SEEN: f64 = 1e-6;
     /// So may a replay of controls that come a moment earlier or later.
     pub(crate) const TIMING: f64 = 1e-2;
     /// Inside of a phase the Hamiltonian of an autonomous system may change by so much of its size.

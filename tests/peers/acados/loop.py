@@ -1,6 +1,6 @@
 """A cart with friction in closed loop, 50 steps in a second: `fdcc` and acados by turns.
 
-    python/environment && python/test -k controller       # the package fdcc, in target/python
+    python/test -k controller                             # the package fdcc, in target/python
     target/python/bin/pip install comma-deps-acados casadi
     cargo build --release --package fdcc-c
     target/python/bin/python tests/peers/acados/loop.py
@@ -95,8 +95,8 @@ class Acados:
 
 
 KINDS = {
-    "fdcc from C": lambda n: C(n),
-    "fdcc from Python": lambda n: Python(n),
+    "fdcc from C": C,
+    "fdcc from Python": Python,
     "acados, converged, exact Hessian": lambda n: Acados(n, "SQP", "EXACT"),
     "acados, converged, Gauss-Newton": lambda n: Acados(n, "SQP", "GAUSS_NEWTON"),
     "acados, one iteration": lambda n: Acados(n, "SQP_RTI", "GAUSS_NEWTON"),

@@ -30,8 +30,11 @@ pub(super) fn solve(
     let start = record.as_ref().map_or(options.start, Start::Record);
     let found = without.solve(&Options { start, ..*options })?;
     let Some(found) = tight(own, found, options)? else { return Ok(None) };
+    let was_certified = found.is_certified();
     let first = with_kinks(own, found);
-    Ok(Some(located(own, &first, options)?.unwrap_or(first)))
+    // What the replay with its kinks contradicts is none.
+    let is_lost = was_certified && !first.is_certified();
+    Ok(located(own, &first, options)?.or((!is_lost).then_some(first)))
 }
 
 /// The answer to a model whose kinks stayed as they are; where those of time alone can be located,

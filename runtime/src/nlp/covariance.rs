@@ -179,8 +179,13 @@ impl System {
         });
         let d: Vec<f64> = d.collect();
         let is_active = |row: &usize| !equality[*row] && d[*row] < 1.0 / TINY;
-        let active = (0..d.len()).filter(is_active).map(|row| nlp.constraint_place(row).origin);
-        let mut active: Vec<String> = active.map(|it| it.label.to_string()).collect();
+        // One along the time is the same in all phases, one at the ends is not.
+        let named = |row: usize| {
+            let place = nlp.constraint_place(row);
+            let phase = if place.grid_point.is_some() { 0 } else { place.phase };
+            (phase, place.origin.label.to_string())
+        };
+        let mut active: Vec<_> = (0..d.len()).filter(is_active).map(named).collect();
         active.sort();
         active.dedup();
         System { factor, derivatives, bounds, sigma, d, active: active.len(), fixed, equality, of }

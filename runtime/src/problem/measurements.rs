@@ -42,9 +42,12 @@ pub struct Measurements {
 
 impl Measurements {
     /// Whether a row at this normalised time is one of this phase. One between two phases belongs
-    /// to the second.
+    /// to the second, and so does one of a phase without a duration, whose time is no number.
     pub(crate) fn has(&self, tau: f64) -> bool {
         let [before, behind] = self.is_shared;
+        if tau.is_nan() {
+            return !behind;
+        }
         (!before || tau >= 0.0) && (!behind || tau < 1.0)
     }
 }

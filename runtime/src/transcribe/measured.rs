@@ -193,7 +193,7 @@ impl<'p> Measured<'p> {
         for row in 0..self.rows.len() {
             let tau = (self.measurements.times[row] - first) / (last - first);
             self.is_own[row] = self.measurements.has(tau);
-            let tau = tau.clamp(0.0, 1.0);
+            let tau = if tau.is_nan() { 0.0 } else { tau.clamp(0.0, 1.0) };
             let (k, time) = mesh.find(tau);
             let length = mesh.at(k, 1.0) - mesh.at(k, 0.0);
             self.tables.points.column_mut(0)[row] = tau;

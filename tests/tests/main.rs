@@ -29,6 +29,7 @@ mod final_times;
 mod fixes;
 mod format;
 mod functions;
+mod functions_of_integrals;
 mod fuzzing;
 mod grids;
 mod growth;

@@ -23,7 +23,7 @@ mod kinks;
 mod links;
 mod links_by_parameters;
 mod measured;
-mod objective;
+pub(crate) mod objective;
 mod problem;
 mod residuals;
 mod simulation;

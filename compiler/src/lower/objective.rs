@@ -100,6 +100,16 @@ pub(crate) fn split(model: &Model, graph: &mut Graph) -> Objective {
     split
 }
 
+/// The [integrals](Model::integrals) that become states, in the order of these.
+pub(crate) fn integrals_in_states(model: &Model) -> Vec<usize> {
+    let hidden = split(model, &mut model.graph.clone()).hidden.into_iter();
+    let integral = |it| match it {
+        Hidden::Integral(at) => Some(at),
+        Hidden::Sum(_) => None,
+    };
+    hidden.filter_map(integral).collect()
+}
+
 /// The integrals and sums that some expressions read.
 pub(crate) fn hidden_in(model: &Model, graph: &Graph, roots: &[ExprId]) -> Vec<Hidden> {
     let inputs = graph.inputs_of(roots);

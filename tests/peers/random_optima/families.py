@@ -118,6 +118,8 @@ def bounded(draw):
         state, size = model.states[1], goal / (1.0 if model.unknowns else model.duration) * draw.number(1.05, 1.6)
     else:
         state, size = model.states[0], goal * draw.number(1.02, 1.3)
+    ends = [abs(float(b.strip('(-)').split(' ')[0])) for a, _, b in model.ends if a == state.name]
+    size = max([size, *(1.05 * it for it in ends)])  # an end beyond its bound is refused
     state.low, state.high = -float(f'{size:.3g}'), float(f'{size:.3g}')
     return model
 

@@ -28,6 +28,8 @@ class Simulation:
         self.watched = model.function([model.surfaces[surface] for _, surface, *_ in model.jumps])
         self.resets = {name: model.function(list(values.values())) for name, *_, values in model.jumps}
         self.states = [s.name for s in model.states]
+        spans = [max(abs(c.high), abs(c.low)) * c.si for c in model.controls]
+        self.cost_size = min(1.0, 1e-3 * max(spans)**2 * breaks[-1])  # of units in which it may be tiny
         self.scale = sizes if sizes is not None else np.maximum(np.abs(start), 1e-3)
         self.psi_sizes = self.surface_sizes(start)
         n = self.system.count
@@ -124,7 +126,7 @@ class Simulation:
         events, step = self.leaving(modes) + self.striking(), until - self.t
         while True:
             part = solve_ivp(rate, (self.t, until), self.x, method='DOP853', rtol=TOLERANCE, max_step=step,
-                             atol=0.1 * TOLERANCE * np.append(self.scale, 1.0), events=events or None,
+                             atol=0.1 * TOLERANCE * np.append(self.scale, self.cost_size), events=events or None,
                              dense_output=True)
             if part.status < 0 or not np.all(np.isfinite(part.y)):
                 raise Delicate(f'the motion cannot be followed from t = {self.t:.9g}')

@@ -9,6 +9,7 @@
 use super::{Modes, PhaseOfModes, prepared, refuse};
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
+use crate::lower::objective::integrals_in_states;
 use crate::model::{Constraint, Control, Integral, Model, Range, Symbol};
 use crate::phases::division::{Division, divide};
 use crate::phases::shares::is_given;
@@ -25,6 +26,8 @@ pub struct Point {
     pub states: Vec<f64>,
     /// One per state: the derivative by it of the objective of the model, as written.
     pub costates: Vec<f64>,
+    /// One per integral that became a state, behind those of the model: the derivative by it.
+    pub integrals: Vec<f64>,
     /// One per `free`.
     pub unknowns: Vec<f64>,
 }
@@ -33,13 +36,12 @@ pub struct Point {
 ///
 /// # Errors
 ///
-/// What cannot be divided into phases of given modes; nothing where integrals are not simply added
-/// up, so that their weight is not known beforehand.
+/// What cannot be divided into phases of given modes.
 pub fn hamiltonian(
     model: &Model,
     of: &PhaseOfModes,
     point: &Point,
-) -> Result<Option<Model>, Vec<Diagnostic>> {
+) -> Result<Model, Vec<Diagnostic>> {
     refuse(model)?;
     let (jumps, mut whole) = (Jumps::new(model)?, prepared(model));
     let times = divide(&mut whole, Vec::new());
@@ -49,16 +51,15 @@ pub fn hamiltonian(
 }
 
 impl Modes<'_> {
-    fn into_hamiltonian(mut self, point: &Point) -> Option<Model> {
+    fn into_hamiltonian(mut self, point: &Point) -> Model {
         let model = self.between.division.model;
         let of = &self.phases[0];
         let meanings = self.selectors(of);
         let moving = self.moving(of);
         let controls = self.controls(of);
-        let running = self.running_cost(&meanings)?;
+        let mut terms = self.running_costs(&meanings, &point.integrals);
         let rows = self.path(0, &moving.states, &meanings);
         let graph = &mut self.between.division.graph;
-        let mut terms: Vec<ExprId> = running.into_iter().collect();
         for (state, costate) in moving.states.iter().zip(&point.costates) {
             terms.push(graph.scale(*costate, state.rate));
         }
@@ -68,19 +69,22 @@ impl Modes<'_> {
             graph.inputs_of(&[id]).iter().any(is_control)
         };
         let rows: Vec<Constraint> = rows.into_iter().filter(|it| reads(graph, it.value)).collect();
-        Some(self.at_point(point, value, rows, controls))
+        self.at_point(point, value, rows, controls)
     }
 
-    /// What each unit of time adds to the objective; nothing where that is not known.
-    #[expect(clippy::option_option, reason = "no running cost is not one that is unknown")]
-    pub(super) fn running_cost(&mut self, meanings: &[ExprId]) -> Option<Option<ExprId>> {
+    /// What each unit of time adds to the objective by each integral; `of_states` are the
+    /// derivatives by those that became states.
+    pub(super) fn running_costs(&mut self, meanings: &[ExprId], of_states: &[f64]) -> Vec<ExprId> {
         let model = self.between.division.model;
-        let mut terms = Vec::new();
-        for (at, factor) in weights(model, &mut self.between.division.graph)? {
-            let integrand = self.with_selectors(model.integrals[at].integrand, meanings);
-            terms.push(self.between.division.graph.mul(factor, integrand));
+        let mut factors = weights(model, &mut self.between.division.graph);
+        for (at, factor) in integrals_in_states(model).into_iter().zip(of_states) {
+            factors.push((at, self.between.division.graph.number(*factor)));
         }
-        Some((!terms.is_empty()).then(|| self.between.division.graph.sum(&terms)))
+        let term = |(at, factor): (usize, ExprId)| {
+            let integrand = self.with_selectors(model.integrals[at].integrand, meanings);
+            self.between.division.graph.mul(factor, integrand)
+        };
+        factors.into_iter().map(term).collect()
     }
 
     /// Nothing but the controls is open any more.
@@ -106,20 +110,18 @@ impl Modes<'_> {
     }
 }
 
-/// Each integral of the objective with its derivative by it; nothing where that is not known
-/// beforehand.
-pub(super) fn weights(model: &Model, graph: &mut Graph) -> Option<Vec<(usize, ExprId)>> {
-    let Some((_, value)) = model.objective else { return Some(Vec::new()) };
+/// Each integral of the objective whose derivative depends on parameters alone, with that.
+pub(super) fn weights(model: &Model, graph: &mut Graph) -> Vec<(usize, ExprId)> {
+    let Some((_, value)) = model.objective else { return Vec::new() };
     let mut all = Vec::new();
     for at in 0..model.integrals.len() {
         let Some(input) = model.input_of(Symbol::Integral(at)) else { continue };
         let weight = derivative(graph, value, input);
-        if !is_given(model, graph, weight) {
-            return None;
+        if is_given(model, graph, weight) {
+            all.push((at, weight));
         }
-        all.push((at, weight));
     }
-    Some(all)
+    all
 }
 
 /// A model whose time, states and unknowns are numbers.

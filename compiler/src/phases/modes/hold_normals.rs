@@ -12,6 +12,7 @@ use super::Point;
 use super::hamiltonian::weights;
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph, evaluate};
+use crate::lower::objective::integrals_in_states;
 use crate::model::numbers::{Numbers, numbers};
 use crate::model::{Model, Symbol};
 
@@ -20,8 +21,11 @@ pub struct HoldNormals<'m> {
     pub(super) model: &'m Model,
     pub(super) graph: Graph,
     numbers: Numbers,
-    /// For each surface `dpsi/dx`, then `df/ds`, then `dL/ds`.
+    /// For each surface `dpsi/dx`, then `df/ds`, then `dL/ds`, then the last of each integral that
+    /// became a state.
     all: Vec<ExprId>,
+    /// So many integrals became states.
+    integrals: usize,
     pub(super) surfaces: Vec<usize>,
 }
 
@@ -37,11 +41,11 @@ pub struct NormalsAt {
 }
 
 impl<'m> HoldNormals<'m> {
-    /// Of these surfaces; nothing where what an integral adds to the objective is not known
-    /// beforehand. `model` is what holds between jumps.
+    /// Of these surfaces; nothing where the numbers of the model are not known. `model` is what
+    /// holds between jumps.
     pub fn new(model: &'m Model, surfaces: &[usize]) -> Option<Self> {
         let mut graph = model.graph.clone();
-        let weights = weights(model, &mut graph)?;
+        let (weights, in_states) = (weights(model, &mut graph), integrals_in_states(model));
         let mut all = Vec::new();
         for at in surfaces {
             let psi = model.surfaces[*at].psi;
@@ -57,9 +61,18 @@ impl<'m> HoldNormals<'m> {
             });
             let costs: Vec<ExprId> = costs.collect();
             all.push(graph.sum(&costs));
+            let integrands = in_states.iter().map(|it| model.integrals[*it].integrand);
+            all.extend(integrands.map(|it| slope(model, &mut graph, it, selector)));
         }
         let numbers = numbers(model).ok()?;
-        Some(HoldNormals { model, graph, numbers, all, surfaces: surfaces.to_vec() })
+        Some(HoldNormals {
+            model,
+            graph,
+            numbers,
+            all,
+            integrals: in_states.len(),
+            surfaces: surfaces.to_vec(),
+        })
     }
 
     /// At a point with these controls and selectors, one for each surface of the model.
@@ -67,11 +80,16 @@ impl<'m> HoldNormals<'m> {
         let inputs = self.inputs(point, controls, selectors);
         let values = evaluate(&self.graph, &self.all, &inputs, &[]);
         let states = self.model.states.len();
-        let of_surfaces = || values.chunks(2 * states + 1).take(self.surfaces.len());
+        let size = 2 * states + 1 + self.integrals;
+        let of_surfaces = || values.chunks(size).take(self.surfaces.len());
+        let cost = |own: &[f64]| {
+            let of_states = own[2 * states + 1..].iter().zip(&point.integrals);
+            own[2 * states] + of_states.map(|(slope, factor)| slope * factor).sum::<f64>()
+        };
         NormalsAt {
             normals: of_surfaces().map(|it| it[..states].to_vec()).collect(),
             directions: of_surfaces().map(|it| it[states..2 * states].to_vec()).collect(),
-            costs: of_surfaces().map(|it| it[2 * states]).collect(),
+            costs: of_surfaces().map(cost).collect(),
         }
     }
 

@@ -11,6 +11,7 @@ use super::limits::bounded_states;
 use super::{Arc, Modes};
 use crate::expressions::graph::ExprId;
 use crate::expressions::graph::derivative::derivative;
+use crate::lower::objective::integrals_in_states;
 use crate::model::{Constraint, Control, Range, Symbol};
 use fdcc_runtime::problem::ControlShape;
 
@@ -91,10 +92,14 @@ impl Modes<'_> {
         let model = self.between.division.model;
         let Some(input) = model.input_of(Symbol::Control(control)) else { return false };
         let meanings = self.selectors(&self.phases[j]);
-        let Some(Some(cost)) = self.running_cost(&meanings) else { return false };
-        let rates: Vec<ExprId> =
-            self.moving(&self.phases[j]).states.iter().map(|it| it.rate).collect();
+        let costs = self.running_costs(&meanings, &[]);
+        // By how much these count is not known.
+        let in_states = integrals_in_states(model).into_iter();
+        let unknown = in_states.map(|at| model.integrals[at].integrand);
+        let rates = self.moving(&self.phases[j]).states.into_iter().map(|it| it.rate);
+        let rates: Vec<ExprId> = rates.chain(unknown).collect();
         let graph = &mut self.between.division.graph;
+        let cost = graph.sum(&costs);
         let mut is_affine = |value: ExprId| {
             let slope = derivative(graph, value, input);
             let curvature = derivative(graph, slope, input);

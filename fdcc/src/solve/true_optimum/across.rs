@@ -3,7 +3,7 @@
 //! The time of such a switch is that of the link, which nothing moves: the modes of the neighbour
 //! are tried for a moment on this side of it.
 
-use super::insertion::Candidate;
+use super::insertion::{Candidate, tried};
 use super::joint::Among;
 use super::{Located, Search};
 use fdcc_compiler::{Mode, PhaseOfModes};
@@ -29,14 +29,8 @@ impl Search<'_> {
                 all.extend(self.with_modes_of(before, other, first).map(|it| (0, it)));
             }
         }
-        let candidate = |(before, held)| Candidate {
-            before,
-            held,
-            slope: f64::NEG_INFINITY,
-            is_forced: false,
-            // What is written of the ends may leave no way back.
-            is_doubtful: true,
-        };
+        // What is written of the ends may leave no way back.
+        let candidate = |(before, held)| Candidate { is_doubtful: true, ..tried(before, held) };
         all.into_iter().map(candidate).collect()
     }
 

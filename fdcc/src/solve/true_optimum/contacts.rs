@@ -190,6 +190,15 @@ impl<'l> Contacts<'l> {
         tracks
     }
 
+    /// When a surface of which a phase is on one side is touched inside of it.
+    pub(super) fn touched(&self, j: usize, switch: usize) -> Vec<f64> {
+        let time = &self.located.outcome.phases[j].trajectory.time;
+        let row = self.row_of_switch(j, switch);
+        let runs = self.runs(j, row, self.range_of_switch(switch)).into_iter();
+        let inside = runs.filter(|it| it.first >= NEAR && it.behind + NEAR < time.len());
+        inside.map(|it| 0.5 * (time[it.first] + time[it.behind])).collect()
+    }
+
     fn runs_of_limit(&self, j: usize, limit: usize) -> Vec<Run> {
         self.runs(j, self.row(j, limit), self.ranges[limit])
     }
@@ -238,14 +247,14 @@ impl<'l> Contacts<'l> {
         self.multipliers_of_row(j, self.row(j, limit))
     }
 
-    fn multipliers_of_row(&self, j: usize, row: usize) -> Vec<f64> {
+    pub(super) fn multipliers_of_row(&self, j: usize, row: usize) -> Vec<f64> {
         let problem = &self.located.chain.phases[j];
         let own = &self.located.outcome.phases[j].trajectory.path_multipliers;
         own[row].iter().map(|it| problem.sense * it).collect()
     }
 
     /// How far the function of a surface goes up and down where it is not held.
-    fn range_of_switch(&self, switch: usize) -> f64 {
+    pub(super) fn range_of_switch(&self, switch: usize) -> f64 {
         let mut range = Extent::default();
         for (j, phase) in self.located.structure.phases.iter().enumerate() {
             if phase.modes[switch] != Mode::Held {
@@ -256,7 +265,7 @@ impl<'l> Contacts<'l> {
     }
 
     /// The first path condition of a phase that is of a surface, or behind all of these.
-    fn row_of_switch(&self, j: usize, switch: usize) -> usize {
+    pub(super) fn row_of_switch(&self, j: usize, switch: usize) -> usize {
         let (switches, phase) = (self.model.switches(), &self.located.structure.phases[j]);
         let before = switches[..switch].iter().zip(&phase.modes);
         let rows: usize = before.map(|(it, mode)| rows_of_switch(it, *mode)).sum();

@@ -5,6 +5,7 @@
 //! come ([`HoldNormals`]), to which the costates of smoothed problems converge.
 
 use super::Located;
+use super::point::point_of;
 use super::polynomials::polynomials;
 use super::tuning::costates::SAME;
 use fdcc_compiler::{HoldNormals, Mode, Model, NormalsAt, Point};
@@ -91,17 +92,7 @@ impl<'l> Hold<'l> {
 
     /// The trajectory at a grid point.
     pub fn point(&self, point: usize) -> Point {
-        let own = self.trajectory();
-        let of = |columns: &[Vec<f64>]| -> Vec<f64> {
-            columns.iter().take(self.states).map(|it| it[point]).collect()
-        };
-        let unknowns = self.problem.unknowns.iter().map(|it| own.parameters[it.parameter]);
-        Point {
-            time: own.time[point],
-            states: of(&own.states),
-            costates: of(&own.costates),
-            unknowns: unknowns.collect(),
-        }
+        point_of(self.trajectory(), (self.problem, self.states), &|column| column[point])
     }
 }
 

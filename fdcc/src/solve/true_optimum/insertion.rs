@@ -11,7 +11,11 @@
 //! which no surface is left or reached that is not held. Where nothing holds the surface there is
 //! no `H'`.
 
+use super::contacts::Contacts;
+use super::point::point_of;
 use super::polynomials::polynomials;
+use super::pressed::Selector;
+use super::structure::Structure;
 use super::tuning::certificate::{MEASURED, WORTH};
 use super::tuning::insertion::{INSIDE, ON_SURFACE, RELEASED, SETTLED};
 use super::{Located, Search};
@@ -29,6 +33,8 @@ use std::ops::ControlFlow;
 pub(super) struct Candidate {
     /// It begins where this phase does; behind the last one where there is none of this number.
     pub before: usize,
+    /// What it is inserted into, where that is not the structure as it is.
+    pub into: Option<Structure>,
     pub held: PhaseOfModes,
     /// The derivative of the objective of the minimisation problem by its duration, for the size of
     /// the Hamiltonian; less than nothing where it is not known.
@@ -59,16 +65,17 @@ impl Search<'_> {
         all.extend(held.map(|held| (last + 1, held)));
         let candidate = |(before, held)| {
             let (slope, is_forced) = self.worth(located, before, &held);
-            Candidate { before, held, slope, is_forced, is_doubtful: false }
+            Candidate { before, into: None, held, slope, is_forced, is_doubtful: false }
         };
         let mut candidates: Vec<Candidate> = all.into_iter().map(candidate).collect();
+        candidates.extend(self.orders(&located.structure));
         for j in (1..phases.len()).filter(|j| phases[*j].jump.is_none()) {
-            candidates.extend(self.one_by_one(j, [&phases[j - 1], &phases[j]]));
             candidates.extend(self.releases(located, j));
         }
         candidates.extend(self.releases_at_ends(located));
         candidates.extend(self.departures_at_the_end(located));
         candidates.extend(self.across_links(located));
+        candidates.extend(self.across_surfaces(located));
         candidates
     }
 
@@ -112,9 +119,9 @@ impl Search<'_> {
     }
 
     /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the
-    /// mode in which that is left.
+    /// mode in which that is left; none that presses the motion onto it.
     fn released(&self, located: &Located, j: usize, end: usize) -> Vec<(usize, Mode)> {
-        let phase = &located.structure.phases[j];
+        let (phase, contacts) = (&located.structure.phases[j], Contacts::new(self.model, located));
         let mut next = self.model.controls.len();
         let mut all = Vec::new();
         for (at, switch) in self.model.switches().iter().enumerate() {
@@ -123,54 +130,16 @@ impl Search<'_> {
             }
             let pieces = polynomials(&located.outcome.phases[j].trajectory, next);
             let piece = if end == 0 { pieces.first() } else { pieces.last() };
-            let selector = piece.map_or(0.0, |it| it.at(it.ends[end]));
+            let value = piece.map_or(0.0, |it| it.at(it.ends[end]));
+            let mode = if value > 0.0 { Mode::Above } else { Mode::Below };
+            let selector = Selector { phase: j, switch: at, control: next };
             next += switch.surfaces.len();
-            if selector.abs() > RELEASED && !switch.is_ball {
-                all.push((at, if selector > 0.0 { Mode::Above } else { Mode::Below }));
+            let may_leave = value.abs() > RELEASED && !switch.is_ball;
+            if may_leave && !contacts.is_pressed_on(selector, mode, end) {
+                all.push((at, mode));
             }
         }
         all
-    }
-
-    /// Where several surfaces change their modes at once: all modes on the way from one phase to
-    /// the next. Each surface has a multiplier of its own there, so that their worth is tried.
-    fn one_by_one(&self, j: usize, [before, after]: [&PhaseOfModes; 2]) -> Vec<Candidate> {
-        let changes = |at: &usize| before.modes[*at] != after.modes[*at];
-        let changing: Vec<usize> = (0..before.modes.len()).filter(changes).collect();
-        if changing.len() < 2 {
-            return Vec::new();
-        }
-        let may_hold = may_hold(self.model);
-        let mut all = vec![before.modes.clone()];
-        for at in changing {
-            let mut options = vec![before.modes[at], after.modes[at], Mode::Held];
-            options.dedup();
-            options.truncate(if may_hold[at] && !options[..2].contains(&Mode::Held) {
-                3
-            } else {
-                2
-            });
-            let with = |modes: &Vec<Mode>, mode: Mode| {
-                let mut own = modes.clone();
-                own[at] = mode;
-                own
-            };
-            let each = all.iter().flat_map(|modes| options.iter().map(|it| with(modes, *it)));
-            all = each.collect();
-        }
-        all.retain(|modes| *modes != before.modes && *modes != after.modes);
-        let candidate = |modes| {
-            let mut held = PhaseOfModes { modes, jump: None, ..after.clone() };
-            held.release();
-            Candidate {
-                before: j,
-                held,
-                slope: f64::NEG_INFINITY,
-                is_forced: false,
-                is_doubtful: false,
-            }
-        };
-        all.into_iter().map(candidate).collect()
     }
 
     /// The modes of a phase with those surfaces held that are 0.
@@ -265,17 +234,7 @@ impl Search<'_> {
 
     /// What a trajectory is where a phase begins, or ends.
     pub(super) fn point(&self, outcome: &Outcome, end: &dyn Fn(&[f64]) -> f64) -> Point {
-        let own = &outcome.trajectory;
-        let of = |columns: &[Vec<f64>]| -> Vec<f64> {
-            columns.iter().take(self.model.states.len()).map(|it| end(it)).collect()
-        };
-        let unknowns = self.problem.unknowns.iter().map(|it| own.parameters[it.parameter]);
-        Point {
-            time: end(&own.time),
-            states: of(&own.states),
-            costates: of(&own.costates),
-            unknowns: unknowns.collect(),
-        }
+        point_of(&outcome.trajectory, (self.problem, self.model.states.len()), end)
     }
 }
 
@@ -284,12 +243,24 @@ fn off_surface(before: usize, beside: &PhaseOfModes, at: usize, mode: Mode) -> C
     let mut off = PhaseOfModes { jump: None, ..beside.clone() };
     off.modes[at] = mode;
     off.release();
-    Candidate { before, held: off, slope: f64::NEG_INFINITY, is_forced: false, is_doubtful: false }
+    tried(before, off)
+}
+
+/// A candidate whose worth only a trial tells.
+pub(super) fn tried(before: usize, held: PhaseOfModes) -> Candidate {
+    Candidate {
+        before,
+        into: None,
+        held,
+        slope: f64::NEG_INFINITY,
+        is_forced: false,
+        is_doubtful: false,
+    }
 }
 
 /// The problem of the least Hamiltonian at a point; nothing where its terms are not known.
 pub(super) fn at_point(model: &Model, of: &PhaseOfModes, point: &Point) -> Option<Chain> {
-    let model = hamiltonian(model, of, point).ok().flatten()?;
+    let model = hamiltonian(model, of, point).ok()?;
     compile_chain(&model).ok()
 }
 
@@ -341,7 +312,7 @@ pub(super) enum Least {
 }
 
 /// Whether the function of a surface is 0 at an end.
-fn is_zero(whole: &Outcome, surface: usize, end: fn(&[f64]) -> f64) -> bool {
+pub(super) fn is_zero(whole: &Outcome, surface: usize, end: fn(&[f64]) -> f64) -> bool {
     let own = &whole.trajectory.switching[surface];
     let largest = own.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
     end(own).abs() <= ON_SURFACE * largest

@@ -11,6 +11,7 @@
 //! ```
 
 mod across;
+mod across_surfaces;
 mod answer;
 mod certificate;
 mod contacts;
@@ -19,9 +20,12 @@ mod hold_sensitivities;
 mod insertion;
 mod joint;
 mod minimum;
+mod orders;
 mod parts;
+mod point;
 mod polish;
 mod polynomials;
+mod pressed;
 mod range;
 mod repair;
 mod replayed;
@@ -336,7 +340,8 @@ impl Search<'_> {
     }
 
     fn held(&mut self, located: &Located, candidate: &Candidate) -> Trial {
-        let structure = located.structure.with_phase(candidate.before, candidate.held.clone());
+        let base = candidate.into.as_ref().unwrap_or(&located.structure);
+        let structure = base.with_phase(candidate.before, candidate.held.clone());
         let is_better = |held: &Located| {
             if candidate.is_forced {
                 return true;

@@ -51,7 +51,7 @@ pub(crate) fn jumps_in_the_end(structure: &Structure) -> bool {
 }
 
 /// Whether a phase has no length.
-fn is_nothing(structure: &Structure, j: usize) -> bool {
+pub(super) fn is_nothing(structure: &Structure, j: usize) -> bool {
     let [first, last] = structure.ends();
     structure.times[j + 1] - structure.times[j] < NOTHING * (last - first)
 }

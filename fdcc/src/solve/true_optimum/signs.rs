@@ -144,13 +144,13 @@ impl Contacts<'_> {
 
 /// The `F` of an arc at its two ends, from what it is on the first and on the last intervals; and
 /// how uncertain that is.
-struct At {
+pub(super) struct At {
     begin: [f64; 2],
     end: [f64; 2],
 }
 
 impl At {
-    fn new(located: &Located, j: usize, nu: Vec<f64>, order: usize) -> Self {
+    pub fn new(located: &Located, j: usize, nu: Vec<f64>, order: usize) -> Self {
         let time = &located.outcome.phases[j].trajectory.time;
         let values = (1..order).fold(nu, |own, _| falls(time, &own));
         let last = time.len() - 1;
@@ -175,7 +175,7 @@ impl At {
     }
 
     /// The same of `F` where the arc ends.
-    fn at_the_end(&self, side: f64) -> f64 {
+    pub fn at_the_end(&self, side: f64) -> f64 {
         -side * self.end[0] - self.end[1]
     }
 }
@@ -190,7 +190,7 @@ fn states_of(model: &Model, value: ExprId) -> Vec<usize> {
 }
 
 /// Minus the derivative by time of what is known on intervals.
-fn falls(time: &[f64], values: &[f64]) -> Vec<f64> {
+pub(super) fn falls(time: &[f64], values: &[f64]) -> Vec<f64> {
     let middle = |k: usize| 0.5 * (time[k] + time[k + 1]);
     let last = values.len() - 1;
     let slope = |k: usize| {
@@ -201,7 +201,7 @@ fn falls(time: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// 1 where a bound is a lower one.
-fn side(arc: Arc) -> f64 {
+pub(super) fn side(arc: Arc) -> f64 {
     match arc {
         Arc::Lower => 1.0,
         Arc::Free => 0.0,

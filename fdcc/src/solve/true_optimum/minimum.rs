@@ -5,6 +5,7 @@
 use super::insertion::{Least, at_point, hamiltonian_at, least};
 use super::polynomials::polynomials;
 use super::range::{Range, ranges};
+use super::tuning::certificate::GAIN;
 use super::tuning::minimum::{BESIDE, FAR, MOST_TOGETHER, PARTS, POINTS};
 use super::{Located, Search};
 use fdcc_compiler::Arc;
@@ -25,8 +26,7 @@ impl Search<'_> {
     /// Compares the controls with others, at some points of each phase; what the objective loses
     /// in each, for its size.
     pub(super) fn compared(&self, located: &mut Located) -> Vec<f64> {
-        let sizes = located.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
-        let size = sizes.fold(f64::MIN_POSITIVE, f64::max);
+        let size = located.hamiltonian_size();
         let phases = 0..located.structure.phases.len();
         let all: Vec<Gain> = phases.map(|j| self.gain_in_phase(located, j)).collect();
         let losses: Vec<f64> = all.iter().map(|it| it.loss / size).collect();
@@ -99,6 +99,17 @@ impl Search<'_> {
         let alone =
             each.flat_map(|(at, range)| range.tried().into_iter().map(move |value| (at, value)));
         alone.map(|(at, value)| with(at, value)).chain(corners(&ranges)).collect()
+    }
+}
+
+impl Located {
+    /// That of the Hamiltonian, over all phases. Of a motion that rests throughout at no cost all
+    /// its terms are rounding: there what is no more than the noise of the solver passes.
+    fn hamiltonian_size(&self) -> f64 {
+        let all = self.outcome.phases.iter().map(|it| &it.trajectory.hamiltonian);
+        let noise = all.clone().map(|it| it.noise).fold(f64::MIN_POSITIVE, f64::max);
+        let least = if all.clone().all(|it| it.is_noise) { noise / GAIN } else { 0.0 };
+        all.map(|it| it.scale).fold(least.max(f64::MIN_POSITIVE), f64::max)
     }
 }
 

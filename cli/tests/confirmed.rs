@@ -1,7 +1,9 @@
 //! `--confirmed`: the exit code tells whether an answer holds on the true system and nothing
 //! contradicts that it is an optimum.
 
-use crate::common::{RAMP, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use crate::common::{
+    RAMP, expect_exit, fdcc, folder, json, model, number, smoothed_race_car, stderr, stdout,
+};
 use serde_json::Value;
 
 /// Friction 5.886 N on 2 kg over 1 m: the block waits, then is pulled for `tau = sqrt(6 m d/f)`, at
@@ -78,7 +80,7 @@ fn a_layer_that_is_left_in_one_step_hides_the_gain_of_a_pause() {
 #[test]
 fn the_race_car_is_not_contradicted_but_not_confirmed_either() {
     let folder = folder("confirmed_racecar", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let output = fdcc(&folder, &["solve", &racecar, "--json", "--log", "none", "--confirmed"], "");
     expect_exit(&output, 2, "the true car leaves the track");
     let optimality = &json(&output)["optimality"];
@@ -105,7 +107,7 @@ fn the_race_car_is_not_contradicted_but_not_confirmed_either() {
 #[test]
 fn solve_ends_with_2_where_the_replay_does_not_confirm() {
     let folder = folder("confirmed_solve", &[("ramp.fdc", RAMP.as_bytes())]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let cases: &[(&[&str], i32)] = &[
         (&["ramp.fdc", "--confirmed"], 0),
         (&[&racecar, "--method", "N=100"], 0),
@@ -130,7 +132,7 @@ fn sweep_replays_each_row_and_tells_in_a_column() {
     let said = stdout(&output);
     assert!(said.lines().next().is_some_and(|head| head.ends_with("confirmed")), "{said}");
     assert_eq!(said.lines().skip(1).filter(|row| row.ends_with("yes")).count(), 2, "{said}");
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let sweep = ["sweep", &racecar, "N=50,60", "--log", "none", "--json"];
     let plain = json(&fdcc(&folder, &sweep, ""));
     assert!(plain[0].get("confirmed").is_none(), "{plain}");

@@ -48,7 +48,7 @@ fn an_infeasible_problem_names_the_condition_and_the_controls_at_their_bounds() 
 fn ctrl_c_stops_with_the_best_iterate_written() {
     use std::io::{BufRead, BufReader};
     let folder = folder("interrupt", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     // Far more work than the test waits for.
     let arguments = ["solve", &racecar, "--method", "N=10000", "--out", ".", "--log", "full"];
     let mut child = start(&folder, &arguments);

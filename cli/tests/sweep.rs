@@ -9,7 +9,7 @@ fn ramp(test: &str) -> std::path::PathBuf {
 
 #[test]
 fn the_table_has_a_row_per_value_and_a_column_per_name() {
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let arguments = ["sweep", &racecar, "sigma=0.2,0.1", "N=40,50", "kernel=sqrt", "--log", "none"];
     let output = fdcc(&folder("sweep_table", &[]), &arguments, "");
     expect_exit(&output, 0, "sweep");
@@ -70,7 +70,7 @@ fn a_row_that_is_not_solved_changes_the_exit_code_and_no_other_row() {
 #[test]
 fn the_answer_does_not_depend_on_the_number_of_threads() {
     let folder = folder("sweep_jobs", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let rows = |jobs: &str| {
         let arguments = ["sweep", &racecar, "N=30,40,50,60", "--json", "--jobs", jobs];
         without_seconds(json(&fdcc(&folder, &arguments, ""))).to_string()
@@ -84,7 +84,7 @@ fn the_answer_does_not_depend_on_the_number_of_threads() {
 #[test]
 fn a_row_is_what_solve_finds() {
     let folder = folder("sweep_solve", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let swept = json(&fdcc(&folder, &["sweep", &racecar, "N=40", "kernel=sqrt", "--json"], ""));
     let arguments = ["solve", &racecar, "--method", "N=40", "--json"];
     let solved = json(&fdcc(&folder, &arguments, ""));

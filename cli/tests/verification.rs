@@ -1,6 +1,6 @@
 //! Every solve replays its controls on the true system, and says what comes of it.
 
-use crate::common::{RAMP, expect_exit, fdcc, folder, json, model, stdout};
+use crate::common::{RAMP, expect_exit, fdcc, folder, json, smoothed_race_car, stdout};
 
 /// The paper's own solution for sigma = 0.1, N = 1000 is not admissible: with the set-valued
 /// friction its controls leave the track by .346 and cost 7.000. Source: an independent replay with
@@ -9,7 +9,7 @@ use crate::common::{RAMP, expect_exit, fdcc, folder, json, model, stdout};
 #[test]
 fn the_race_car_is_not_called_solved_without_hearing_that_it_leaves_the_track() {
     let folder = folder("verification", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let output = fdcc(&folder, &["solve", &racecar, "--json", "--log", "none"], "");
     expect_exit(&output, 0, "race car");
     let verification = json(&output)["verification"].clone();

@@ -1,7 +1,9 @@
 //! `fdcc verify`: a solution against the true system. The solutions are written by hand, so that
 //! all differences are known.
 
-use crate::common::{RAMP, column, expect_exit, fdcc, folder, json, model, number, stderr, stdout};
+use crate::common::{
+    RAMP, column, expect_exit, fdcc, folder, json, model, number, smoothed_race_car, stderr, stdout,
+};
 use serde_json::Value;
 use std::path::Path;
 
@@ -142,9 +144,9 @@ fn parameters_and_open_starts_are_those_of_the_solution() {
 #[test]
 fn a_solve_and_its_verification_agree() {
     let folder = folder("verify_agrees", &[]);
-    let solve = ["solve", &model("racecar"), "--out", ".", "--json", "--log", "none"];
+    let solve = ["solve", &smoothed_race_car(), "--out", ".", "--json", "--log", "none"];
     let solved = json(&fdcc(&folder, &solve, ""));
-    let found = verified(&folder, &["racecar.sol.json", &model("racecar")], 2);
+    let found = verified(&folder, &["racecar.sol.json", &smoothed_race_car()], 2);
     assert_eq!(found["verification"], solved["verification"]);
     assert_eq!(found["same_source"], true);
     let generous = json(&fdcc(&folder, &[&solve[..], &["--gap", "0.5"]].concat(), ""));

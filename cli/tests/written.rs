@@ -247,7 +247,7 @@ fn ctrl_c_writes_no_row_that_never_ran_and_counts_those_that_did() {
 #[test]
 fn ctrl_c_prints_no_row_that_was_cut_off() {
     let place = folder("written_table", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let rows = format!("muN={}", vec!["1"; 200].join(","));
     let arguments = ["sweep", &racecar, &rows, "--jobs", "2", "--json", "--method", "N=400"];
     let mut child = start(&place, &arguments);
@@ -268,7 +268,7 @@ fn ctrl_c_prints_no_row_that_was_cut_off() {
 #[test]
 fn ctrl_c_counts_the_starts_that_ran() {
     let place = folder("written_starts", &[]);
-    let racecar = model("racecar");
+    let racecar = smoothed_race_car();
     let arguments = ["solve", &racecar, "--starts", "5000", "--log", "full", "--no-verify"];
     let mut child = start(&place, &arguments);
     let mut lines = BufReader::new(child.stderr.take().expect("piped")).lines();

@@ -6,7 +6,7 @@ fn main() {
     divan::main();
 }
 
-const RACECAR: &str = include_str!("../../models/racecar.fdc");
+const RACECAR: &str = include_str!("../reference/racecar.fdc");
 
 fn understood(text: &str) -> usize {
     let parsed = fdcc_grammar::parse(black_box(text));

@@ -7,7 +7,7 @@ fn main() {
     divan::main();
 }
 
-const RACECAR: &str = include_str!("../../models/racecar.fdc");
+const RACECAR: &str = include_str!("../reference/racecar.fdc");
 
 #[divan::bench]
 fn parse() -> fdcc_grammar::Parse {

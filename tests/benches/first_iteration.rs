@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-const RACECAR: &str = include_str!("../../models/racecar.fdc");
+const RACECAR: &str = include_str!("../reference/racecar.fdc");
 const STAGES: [&str; 4] = ["read", "checked", "compiled", "first iteration"];
 const RUNS: usize = 300;
 

@@ -53,7 +53,7 @@ fn cut(text: &str, last: &str, count: usize) -> String {
 
 /// The race car without its time.
 fn racecar() -> String {
-    let path = repository().join("models/racecar.fdc");
+    let path = repository().join("tests/reference/racecar.fdc");
     let text = std::fs::read_to_string(path).expect("the model is there");
     let (text, _) = text.split_once("report {").expect("the report is the last item");
     text.replace("time t in [0, T]\n", "")

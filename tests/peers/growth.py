@@ -18,7 +18,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 DOCS = HERE.parent.parent / 'docs'
-RACECAR = (HERE.parent.parent / 'models' / 'racecar.fdc').read_text()
+RACECAR = (HERE.parent.parent / 'tests' / 'reference' / 'racecar.fdc').read_text()
 INTERVALS = (1000, 10_000, 100_000, 1_000_000)
 MASSES = (2, 5, 10, 20)
 

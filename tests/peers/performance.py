@@ -16,7 +16,7 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-MODEL = HERE.parent.parent / 'models' / 'racecar.fdc'
+MODEL = HERE.parent.parent / 'tests' / 'reference' / 'racecar.fdc'
 ROWS = [(0.1, 250), (0.1, 500), (0.1, 1000), (0.1, 2000), (0.05, 500), (0.05, 1000), (0.05, 2000),
         (0.025, 1000), (0.025, 2000), (0.025, 4000)]
 PAPER = {row: known for row, known in zip(ROWS, (

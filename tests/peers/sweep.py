@@ -19,7 +19,7 @@ import tempfile
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
-MODEL = HERE.parent.parent / 'models' / 'racecar.fdc'
+MODEL = HERE.parent.parent / 'tests' / 'reference' / 'racecar.fdc'
 HEAD = ['T', 'sigma', 'width', 'muN', 'N', 'status', 'objective', 'iterations', 'seconds']
 
 

@@ -61,13 +61,16 @@ pub fn borrowed(pairs: &[(String, String)]) -> Vec<(&str, &str)> {
     pairs.iter().map(|(name, value)| (name.as_str(), value.as_str())).collect()
 }
 
-/// The text of `models/NAME.fdc`.
+/// The text of `models/NAME.fdc`; of one whose smoothed problem is the paper's, with its width
+/// (`tests/reference`).
 pub fn text_of(name: &str) -> String {
-    let path = repository().join("models").join(name).with_extension("fdc");
+    let folders = ["tests/reference", "models"].map(|it| repository().join(it).join(name));
+    let [smoothed, written] = folders.map(|it| it.with_extension("fdc"));
+    let path = if smoothed.exists() { smoothed } else { written };
     std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
 }
 
-/// The problem of `models/NAME.fdc`.
+/// The problem of [`text_of`].
 pub fn load(name: &str, parameters: Changes, methods: Changes) -> Problem {
     problem(&text_of(name), parameters, methods)
 }

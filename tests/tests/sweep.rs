@@ -26,7 +26,7 @@ fn wrong(
 }
 
 fn all_wrong(sigma: &str, steps: &str) -> Vec<String> {
-    let file = repository().join("models/racecar.fdc");
+    let file = repository().join("tests/reference/racecar.fdc");
     let text = std::fs::read_to_string(file).expect("the model is there");
     assert!(text.contains("guess 6\n"));
     let mut found = Vec::new();

@@ -11,7 +11,7 @@ use fdcc_runtime::linalg::is_fused;
 use fdcc_runtime::nlp::Nlp;
 use fdcc_runtime::problem::Chain;
 use fdcc_runtime::transcribe::chain::ChainNlp;
-use fdcc_tests::models::{in_phases, meaning, problem, refusal, solve_chain};
+use fdcc_tests::models::{in_phases, meaning, problem, refusal, solve_chain, text_of};
 use fdcc_tests::{documents, repository};
 
 const HEADINGS: [&str; 12] = [
@@ -37,8 +37,8 @@ const SIZES: usize = 4;
 fn cases() -> Vec<(String, Chain)> {
     let models = documents("models", "fdc").into_iter().filter(|(_, text)| refusal(text).is_none());
     let mut cases: Vec<(String, Chain)> =
-        models.flat_map(|(name, text)| with_jumps(&name, &meaning(&text))).collect();
-    let race = fdcc_tests::models::text_of("racecar");
+        models.flat_map(|(name, _)| with_jumps(&name, &meaning(&text_of(&name)))).collect();
+    let race = text_of("racecar");
     for (name, method) in [
         ("racecar 0.05 500", [("sigma", "0.05"), ("N", "500")]),
         ("racecar 0.025 1000", [("sigma", "0.025"), ("N", "1000")]),

@@ -25,6 +25,11 @@ pub fn model(name: &str) -> String {
     format!("{}/../models/{name}.fdc", env!("CARGO_MANIFEST_DIR"))
 }
 
+/// The smoothed race car of the paper.
+pub fn smoothed_race_car() -> String {
+    format!("{}/../tests/reference/racecar.fdc", env!("CARGO_MANIFEST_DIR"))
+}
+
 /// A model of the literature, by its place in `tests/classics`.
 pub fn classic(name: &str) -> String {
     format!("{}/../tests/classics/{name}.fdc", env!("CARGO_MANIFEST_DIR"))

@@ -18,6 +18,7 @@ mod degenerate;
 mod derivatives;
 mod direction_gradients;
 mod documents;
+mod edges;
 mod editors;
 mod elsewhere;
 mod emitted;

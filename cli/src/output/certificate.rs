@@ -171,7 +171,9 @@ pub fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
              {limit})"
         ),
         "contacts" if is_unknown => {
-            "the motion is kept from the surface of a jump, or on it in the end".into()
+            "the motion is kept from the surface of a jump, or on it in the end; or it goes along \
+             a surface on one side of it"
+                .into()
         }
         "replayed" if is_unknown => "the replay does not reach the end".into(),
         "contacts" => format!(

@@ -61,13 +61,21 @@ pub fn without_kinks(model: &Model, kinks: Kinks, is_true: bool) -> Option<Model
     if kinks == Kinks::Located && !(is_true && bent.has_more_surfaces()) {
         return None;
     }
-    let mut without = Without { own: model.clone(), bent: &bent, kinks, is_true, all: Vec::new() };
+    let mut without = Without {
+        own: model.clone(),
+        bent: &bent,
+        kinks,
+        is_true,
+        all: Vec::new(),
+        has_declared: false,
+    };
     without.rewrite();
     let is_divided = without.divide_conditions();
     if let Kinks::Priced(price) = kinks {
         without.charge(price);
     }
-    (is_divided || !without.all.is_empty()).then_some(without.own)
+    let is_changed = is_divided || without.has_declared || !without.all.is_empty();
+    is_changed.then_some(without.own)
 }
 
 /// Whether a name is that of something that stands for a kink; no name of a model is.
@@ -152,6 +160,8 @@ struct Without<'m> {
     kinks: Kinks,
     is_true: bool,
     all: Vec<Standing>,
+    /// Whether a surface of the model stands for a kink.
+    has_declared: bool,
 }
 
 impl Without<'_> {
@@ -193,8 +203,11 @@ impl Without<'_> {
     }
 
     /// What stands for another kink at the same place: `max(e, 0) = max(-e, 0) + e`.
-    fn known(&self, graph: &mut Graph, e: ExprId) -> Option<(Kind, ExprId)> {
+    fn known(&mut self, graph: &mut Graph, e: ExprId) -> Option<(Kind, ExprId)> {
         let opposite = graph.neg(e);
+        if let Some(selector) = self.declared(graph, [e, opposite]) {
+            return Some((Kind::Surface, selector));
+        }
         let is_same = |it: &&Standing| it.e == e || it.e == opposite;
         let known = self.all.iter().find(is_same)?;
         let value = match known.kind {
@@ -203,6 +216,19 @@ impl Without<'_> {
             _ => graph.add(known.value, known.e),
         };
         Some((known.kind, value))
+    }
+
+    /// The selector of a surface of the model on which a kink is, or its opposite.
+    fn declared(&mut self, graph: &mut Graph, [e, opposite]: [ExprId; 2]) -> Option<ExprId> {
+        let surfaces = self.own.surfaces.iter().filter(|_| self.is_true);
+        let mut surfaces = surfaces.enumerate().filter(|it| !is_kink(&it.1.place.name));
+        let (at, surface) = surfaces.find(|it| it.1.psi == e || it.1.psi == opposite)?;
+        let is_same = surface.psi == e;
+        self.has_declared = true;
+        let symbols = &mut self.own.symbols;
+        let input = Symbols { graph, symbols }.input(Symbol::Selector(at));
+        let selector = graph.input(input);
+        Some(if is_same { selector } else { graph.neg(selector) })
     }
 
     /// Declares what stands for a kink.

@@ -11,7 +11,7 @@ use super::true_optimum::{
     jumps_in_the_end, ranges, variation, wrong_sign,
 };
 use crate::verification::{Stay, Verification, modes};
-use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, limits};
+use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, is_kink, limits};
 use fdcc_runtime::problem::{Problem, Variable};
 use fdcc_runtime::solution::modes::Span;
 use fdcc_runtime::solve::Outcome;
@@ -81,12 +81,13 @@ pub(super) fn size_of_objective(located: &Located, model: &Model) -> f64 {
 }
 
 /// How wrong the sign of the multiplier of a state or a path condition at its bound is; infinite
-/// where the motion is kept from a jump.
+/// where the motion is kept from a jump, or on one side of a surface that it is on.
 fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
     let contacts = Contacts::new(model, located);
     let wrong = contacts.wrong_sign().map_or(0.0, |it| it.part.max(0.0));
     let is_kept = contacts.is_at_jump() || jumps_in_the_end(&located.structure);
-    if between.has_objective && is_kept { f64::INFINITY } else { wrong }
+    let is_on_edge = || contacts.stays_on_a_surface();
+    if between.has_objective && (is_kept || is_on_edge()) { f64::INFINITY } else { wrong }
 }
 
 /// What each control does, and each state and path condition that is at a bound anywhere; where it
@@ -180,7 +181,10 @@ fn other_modes(model: &Model, solution: &Solution, replay: &Verification) -> f64
         let others = (0..time.len() - 1).filter(|k| is_off(*k) && is_other(*k));
         others.map(|k| time[k + 1] - time[k]).sum::<f64>() / duration
     };
-    model.switches().iter().enumerate().map(of).fold(0.0, f64::max)
+    // On a kink, both modes are the same.
+    let all = model.switches().into_iter().enumerate();
+    let meant = all.filter(|it| !is_kink(&it.1.place.name));
+    meant.map(|(at, switch)| of((at, &switch))).fold(0.0, f64::max)
 }
 
 fn is_same(switch: &Switched, span: &Span, stay: &Stay) -> bool {

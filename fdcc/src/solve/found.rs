@@ -21,6 +21,8 @@ pub(super) struct Found {
     pub phases: Option<Phases>,
     /// Which jumps and crossings happen, one between each two of these phases.
     pub events: Vec<usize>,
+    /// The answers with the next best sequences of jumps.
+    pub next: Vec<Found>,
 }
 
 /// A jump of a solution.
@@ -107,6 +109,7 @@ impl Found {
             is_cut: false,
             phases: None,
             events: Vec::new(),
+            next: Vec::new(),
         }
     }
 }

@@ -29,12 +29,24 @@ pub(super) fn solve(
     };
     let start = record.as_ref().map_or(options.start, Start::Record);
     let found = without.solve(&Options { start, ..*options })?;
-    let Some(found) = tight(own, found, options)? else { return Ok(None) };
-    let was_certified = found.is_certified();
-    let first = with_kinks(own, found);
+    let (was_certified, first) = match certified(own, &found) {
+        Some(first) => (true, first),
+        None => {
+            let Some(found) = tight(own, found, options)? else { return Ok(None) };
+            (found.is_certified(), with_kinks(own, found))
+        }
+    };
     // What the replay with its kinks contradicts is none.
     let is_lost = was_certified && !first.is_certified();
     Ok(located(own, &first, options)?.or((!is_lost).then_some(first)))
+}
+
+/// A certified answer whose replay with its kinks has the same objective: that is what was allowed
+/// at best, whatever means over intervals say of its gaps.
+fn certified(own: &Compiled, found: &Solution) -> Option<Solution> {
+    let is_asked = found.is_certified() && own.problem.has_objective;
+    let first = is_asked.then(|| with_kinks(own, found.clone()));
+    first.filter(Solution::is_certified)
 }
 
 /// The answer to a model whose kinks stayed as they are; where those of time alone can be located,

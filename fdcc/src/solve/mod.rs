@@ -170,7 +170,7 @@ impl Compiled {
                 }
             };
             return Ok(match meaning.at_times.is_empty() {
-                true => located::solution(&self.model, found, options),
+                true => self.with_certified_jumps(found, options),
                 false => located_at_times::solution(&self.model, found, options),
             });
         }
@@ -188,6 +188,24 @@ impl Compiled {
             }
             false => located_in_phases::solution(&self.model, found, options),
         })
+    }
+
+    /// The answer with the best sequence of jumps; where it is not certified, with the next best
+    /// that is.
+    fn with_certified_jumps(&self, mut found: Found, options: &Options) -> Solution {
+        let next = std::mem::take(&mut found.next);
+        let first = located::solution(&self.model, found, options);
+        let is_missing = first.certificate.as_ref().is_some_and(|it| !it.is_certified());
+        for other in next.into_iter().filter(|_| is_missing) {
+            if (options.stop)().is_break() {
+                break;
+            }
+            let other = located::solution(&self.model, other, options);
+            if other.is_certified() {
+                return other;
+            }
+        }
+        first
     }
 
     /// What is certified near the answer with another kernel, where nothing is near that with the

@@ -11,6 +11,7 @@ use fdcc_runtime::solution::Trajectory;
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
 /// The answer to a chain, as the solver has it.
+#[derive(Clone)]
 pub(super) struct Whole {
     pub chain: Chain,
     pub outcome: ChainOutcome,

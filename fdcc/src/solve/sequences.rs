@@ -5,7 +5,7 @@ use super::found::{Found, FoundChain, Jump, Phases, Sequence};
 use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
 use super::tuning::sequences::{
-    BRIEF, FEW, FEW_SEQUENCES, FEWEST_INTERVALS, LONGEST, SHORTEST, STEPS, WORSE,
+    BRIEF, FEW, FEW_SEQUENCES, FEWEST_INTERVALS, LONGEST, NEXT, SHORTEST, STEPS, WORSE,
 };
 use crate::error::Error;
 use crate::executor::Executor;
@@ -65,19 +65,29 @@ pub(super) fn solve(
         let part = Part { sequence: Some(sequence), start: None };
         (options.report)(&Report::Ended(part, &Ended::of(&found.chain, &found.outcome)));
     }
-    let solutions = found.iter().map(|it| &it.outcome.solution).enumerate();
-    let best = solutions.reduce(|a, b| if is_better(b.1, a.1) { b } else { a });
-    let best = best.expect("that no jump happens is one of them").0;
-    let tried =
-        all.iter().zip(&found).enumerate().map(|(at, (it, found))| it.tried(found, at == best));
-    let tried = tried.collect();
     let outcomes = found.iter().map(|it| &it.outcome);
     let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
-    let (alternatives, found) = (all.into_iter().nth(best), found.into_iter().nth(best));
-    let (alternative, mut found) = alternatives.zip(found).expect("it is one of them");
-    found.outcome.attempts = attempts;
-    unless_stopped(&mut found.outcome.solution, stopped);
-    Ok(Found { sequences: tried, is_cut, ..alternative.joined(between, found) })
+    let answer = |at: usize| {
+        let tried = all.iter().zip(&found).enumerate();
+        let tried = tried.map(|(other, (it, found))| it.tried(found, other == at));
+        let (alternative, mut own) = (all[at].clone(), found[at].clone());
+        own.outcome.attempts.clone_from(&attempts);
+        unless_stopped(&mut own.outcome.solution, stopped.clone());
+        Found { sequences: tried.collect(), is_cut, ..alternative.joined(between, own) }
+    };
+    let (best, next) = best_and_next(&found);
+    Ok(Found { next: next.into_iter().take(NEXT).map(answer).collect(), ..answer(best) })
+}
+
+/// The best one; and the others that are solved, the best of them first.
+fn best_and_next(found: &[FoundChain]) -> (usize, Vec<usize>) {
+    let solution = |at: usize| &found[at].outcome.solution;
+    let better = |a: usize, b: usize| if is_better(solution(b), solution(a)) { b } else { a };
+    let best = (0..found.len()).reduce(better).expect("that no jump happens is one of them");
+    let others = (0..found.len()).filter(|at| *at != best && found[*at].is_solved());
+    let mut next: Vec<usize> = others.collect();
+    next.sort_by(|a, b| solution(*a).objective.total_cmp(&solution(*b).objective));
+    (best, next)
 }
 
 /// The answer of each, up to the first that is enough. Where there are many, those that lead to

@@ -43,6 +43,7 @@ use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
 /// assert!((next.objective() - 0.5).abs() < 1e-8);
 /// # Ok::<(), fdcc::Error>(())
 /// ```
+#[derive(Clone)]
 pub struct Solution {
     model: Model,
     /// The problem on the grid of the answer. Of a model with jumps, what holds between them.

@@ -66,6 +66,8 @@ pub(super) mod sequences {
     /// Sequences that are worse than the best by more than this part of its objective are not
     /// solved once more.
     pub(crate) const WORSE: f64 = 0.05;
+    /// Where the best one is not certified, so many others are looked at.
+    pub(crate) const NEXT: usize = 2;
     /// A guess is not worth more steps of a simulation.
     pub(crate) const STEPS: usize = 20_000;
     /// More are not looked for where the guess leads to that many.

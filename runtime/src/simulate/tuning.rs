@@ -17,6 +17,8 @@ pub(crate) mod field {
     pub(crate) const SOLVED: f64 = 1e-13;
     /// A state is on its surfaces at this part of their rounding errors.
     pub(crate) const PROJECTED: f64 = 0.1;
+    /// A part of the largest time that steps can follow.
+    pub(crate) const MOMENT: f64 = 1e-14;
     /// A state is on a surface within so many times its rounding error.
     pub(crate) const ON_SURFACE: f64 = 10.0;
 }

@@ -36,26 +36,43 @@ fn is_unfinished(sequence: &Sequence) -> bool {
     ["time_limit", "interrupted", "iteration_limit"].contains(&sequence.ended.status)
 }
 
-/// Whether the answer has exactly the jumps of a sequence, wherever it was found.
+/// Whether the answer has exactly the jumps of a sequence, wherever it was found: what is located
+/// may have others than what it was found near.
 fn is_found(sequence: &Sequence, document: &Document) -> bool {
     let jumps = document.jumps.iter().map(|it| &it.jump);
-    sequence.crosses.is_empty() && !sequence.jumps.is_empty() && jumps.eq(&sequence.jumps)
+    let is_known = sequence.is_answer || sequence.crosses.is_empty() && document.jumps.len() > 0;
+    is_known && jumps.eq(&sequence.jumps)
 }
 
+/// By more than a grid changes it.
+fn is_clearly_better(sequence: &Sequence, solution: &Solution, document: &Document) -> bool {
+    let [own, its] = [document.objective, sequence.ended.objective];
+    let gain = solution.problem.sense * (own - its);
+    gain > COARSE * own.abs().max(its.abs())
+}
+
+/// Grids change an objective by less than this part of it.
+const COARSE: f64 = 0.02;
 /// So many of the other sequences are told.
 const OTHERS: usize = 4;
 
 /// What is the best with other jumps, the best of them first.
 fn with_others(solution: &Solution, document: &Document) -> Vec<String> {
-    let others = solution.sequences.iter().filter(|it| !it.is_answer && !is_found(it, document));
+    let others = solution.sequences.iter().filter(|it| !is_found(it, document));
     let is_solved = |it: &&Sequence| it.ended.is_solved;
     let (mut solved, failed): (Vec<&Sequence>, Vec<&Sequence>) = others.partition(is_solved);
     let distance = |it: &Sequence| (it.ended.objective - document.objective).abs();
     solved.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let value = |it: &Sequence| document.units.value("objective", it.ended.objective, 9);
+    let is_certified = solution.is_certified();
+    let better = |it: &Sequence| match is_certified && is_clearly_better(it, solution, document) {
+        true => ", better on its grid, and not certified",
+        false => "",
+    };
     let told = solved.iter().take(OTHERS);
-    let mut lines: Vec<String> =
-        told.map(|it| format!("       {}: objective {}", it.words, value(it))).collect();
+    let mut lines: Vec<String> = told
+        .map(|it| format!("       {}: objective {}{}", it.words, value(it), better(it)))
+        .collect();
     let more = solved.len().saturating_sub(OTHERS);
     lines.extend((more > 0).then(|| format!("       {}: worse", plural(more, "other sequence"))));
     let (unfinished, failed): (Vec<&Sequence>, Vec<&Sequence>) =

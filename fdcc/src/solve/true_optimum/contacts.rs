@@ -5,7 +5,7 @@
 use super::Located;
 use super::tracks::Track;
 use super::tuning::contacts::{
-    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN,
+    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN, TOUCHED,
 };
 use super::tuning::structure::SHORTEST;
 use fdcc_compiler::{Arc, Limit, Mode, Model, PhaseOfModes, Switch, limits, may_hold};
@@ -42,10 +42,10 @@ pub(crate) struct Touch {
 }
 
 /// Intervals on which a limit is active.
-struct Run {
-    first: usize,
-    behind: usize,
-    arc: Arc,
+pub(super) struct Run {
+    pub first: usize,
+    pub behind: usize,
+    pub arc: Arc,
 }
 
 impl Run {
@@ -190,8 +190,8 @@ impl<'l> Contacts<'l> {
         tracks
     }
 
-    /// When a surface of which a phase is on one side is touched inside of it.
-    pub(super) fn touched(&self, j: usize, switch: usize) -> Vec<f64> {
+    /// When a surface of which a phase is on one side is touched inside of it with a multiplier.
+    pub(super) fn pressed(&self, j: usize, switch: usize) -> Vec<f64> {
         let time = &self.located.outcome.phases[j].trajectory.time;
         let row = self.row_of_switch(j, switch);
         let runs = self.runs(j, row, self.range_of_switch(switch)).into_iter();
@@ -199,12 +199,25 @@ impl<'l> Contacts<'l> {
         inside.map(|it| 0.5 * (time[it.first] + time[it.behind])).collect()
     }
 
+    /// When the motion comes to such a surface and turns, without a multiplier.
+    pub(super) fn turns(&self, j: usize, switch: usize) -> Vec<f64> {
+        let trajectory = &self.located.outcome.phases[j].trajectory;
+        let row = self.row_of_switch(j, switch);
+        let psi = path_values(&self.located.chain.phases[j], trajectory, row);
+        let least = TOUCHED * self.range_of_switch(switch);
+        let turns = (NEAR..psi.len().saturating_sub(NEAR)).filter(|k| {
+            let [before, own, after] = [psi[k - 1], psi[*k], psi[k + 1]].map(f64::abs);
+            own <= before && own < after && nearest(before, own, after) <= least
+        });
+        turns.map(|k| trajectory.time[k]).collect()
+    }
+
     fn runs_of_limit(&self, j: usize, limit: usize) -> Vec<Run> {
         self.runs(j, self.row(j, limit), self.ranges[limit])
     }
 
     /// Where the multiplier of an inequality is not 0, and its bound is near.
-    fn runs(&self, j: usize, row: usize, range: f64) -> Vec<Run> {
+    pub(super) fn runs(&self, j: usize, row: usize, range: f64) -> Vec<Run> {
         let own = self.multipliers_of_row(j, row);
         let problem = &self.located.chain.phases[j];
         let bounds = problem.path_bounds[row];
@@ -315,6 +328,12 @@ impl<'l> Contacts<'l> {
     }
 }
 
+/// The least value of the parabola through three values, the middle of which is the least.
+fn nearest(before: f64, own: f64, after: f64) -> f64 {
+    let (slope, curvature) = (0.5 * (after - before), after + before - 2.0 * own);
+    if curvature > 0.0 { own - 0.5 * slope * slope / curvature } else { own }
+}
+
 /// The least and the largest of some values.
 struct Extent([f64; 2]);
 
@@ -345,7 +364,7 @@ pub(super) fn rows_of_switch(switch: &Switch, mode: Mode) -> usize {
 }
 
 /// A path condition at the beginning of each interval.
-fn path_values(problem: &Problem, trajectory: &Trajectory, row: usize) -> Vec<f64> {
+pub(super) fn path_values(problem: &Problem, trajectory: &Trajectory, row: usize) -> Vec<f64> {
     let points = points(problem, trajectory);
     let mut values = Columns::new(problem.path.outputs(), points.count());
     problem.path.value(&points, &trajectory.parameters, &mut values);

@@ -4,11 +4,14 @@
 //! A start beside the surface is led onto it at once, so that the objective changes by the gradient
 //! (`costates.rs`) and not by the multipliers: with `lambda = gradient + sum of c d` by `c dpsi/dp`
 //! less. An end beside it is another motion for each side, so that there the objective has a kink.
+//! So it has where the motion begins on a surface that it leaves at once, or ends on one that it
+//! reaches at last: beside it that happens a moment earlier, or not at all.
 
 use super::Located;
 use super::costates::Hold;
-use super::tuning::costates::SAME;
-use fdcc_compiler::{Model, Slopes};
+use super::point::point_of;
+use super::tuning::costates::{ON_SURFACE, SAME};
+use fdcc_compiler::{HoldNormals, Mode, Model, Slopes};
 use fdcc_runtime::problem::Problem;
 use nalgebra::{DMatrix, DVector};
 
@@ -30,7 +33,49 @@ impl Located {
             let kinks = kinks(psi, ends, all.len());
             all.iter_mut().zip(kinks).filter(|it| it.1).for_each(|it| *it.0 = f64::NAN);
         }
+        let kinks = self.kinks_at_start(model, problem).into_iter();
+        let kinks = kinks.zip(self.kinks_at_end(model, problem)).map(|(a, b)| a || b);
+        all.iter_mut().zip(kinks).filter(|it| it.1).for_each(|it| *it.0 = f64::NAN);
         all
+    }
+
+    /// For each parameter whether it moves a surface on which the motion begins, and does not stay.
+    fn kinks_at_start(&self, model: &Model, problem: &Problem) -> Vec<bool> {
+        let mut all = vec![false; model.params.len()];
+        let surfaces = self.touched(model, problem, 0);
+        let Some(normals) = HoldNormals::new(model, &surfaces) else { return all };
+        let first = &self.outcome.phases[0].trajectory;
+        let point = point_of(first, (problem, model.states.len()), &|column| column[0]);
+        for slopes in normals.starts_by_parameters(&point) {
+            all.iter_mut().zip(slopes).for_each(|(is_kink, slope)| *is_kink |= slope != 0.0);
+        }
+        all
+    }
+
+    /// The same of the last time: whether it moves a condition there beside the surface.
+    fn kinks_at_end(&self, model: &Model, problem: &Problem) -> Vec<bool> {
+        let surfaces = self.touched(model, problem, 1);
+        let normals = HoldNormals::new(model, &surfaces).filter(|_| !surfaces.is_empty());
+        let Some(normals) = normals else { return vec![false; model.params.len()] };
+        let last = &self.outcome.phases[self.outcome.phases.len() - 1].trajectory;
+        let end = |column: &[f64]| column[column.len() - 1];
+        let point = point_of(last, (problem, model.states.len()), &end);
+        kinks(normals.slopes(&point), normals.slopes_of_ends(&point), model.params.len())
+    }
+
+    /// The surfaces that are 0 at the first (0) or the last (1) time, and are not held there.
+    fn touched(&self, model: &Model, problem: &Problem, end: usize) -> Vec<usize> {
+        let whole = self.whole(problem).outcome.trajectory;
+        let phases = &self.structure.phases;
+        let modes = &phases[end * (phases.len() - 1)].modes;
+        let switches = model.switches().into_iter().zip(modes).enumerate();
+        let touched = switches.filter(|(at, (switch, mode))| {
+            let psi = &whole.switching[*at];
+            let largest = psi.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
+            let is_zero = psi[end * (psi.len() - 1)].abs() <= ON_SURFACE * largest;
+            **mode != Mode::Held && !switch.is_ball && is_zero
+        });
+        touched.map(|(_, (switch, _))| switch.surfaces.start).collect()
     }
 }
 

@@ -312,7 +312,7 @@ pub(super) enum Least {
 }
 
 /// Whether the function of a surface is 0 at an end.
-pub(super) fn is_zero(whole: &Outcome, surface: usize, end: fn(&[f64]) -> f64) -> bool {
+fn is_zero(whole: &Outcome, surface: usize, end: fn(&[f64]) -> f64) -> bool {
     let own = &whole.trajectory.switching[surface];
     let largest = own.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
     end(own).abs() <= ON_SURFACE * largest

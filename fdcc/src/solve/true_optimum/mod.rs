@@ -20,6 +20,7 @@ mod hold_sensitivities;
 mod insertion;
 mod joint;
 mod minimum;
+mod on_surfaces;
 mod orders;
 mod parts;
 mod point;

@@ -6,7 +6,7 @@ use super::range::ranges;
 use super::structure::Structure;
 use super::tuning::certificate::{CONTACT, WRONG_SIGN};
 use super::tuning::repair::NOTHING;
-use fdcc_compiler::{Arc, Mode, Model};
+use fdcc_compiler::{Arc, Mode, Model, is_kink};
 use fdcc_runtime::problem::{Columns, Problem};
 use fdcc_runtime::solution::{ControlSlopes, Trajectory, control_slopes};
 
@@ -87,7 +87,8 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongAr
     all.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
 }
 
-/// Whether what is held in a phase draws the state to itself: `psi'` falls with the selector.
+/// Whether what is held in a phase draws the state to itself: `psi'` falls with the selector. On a
+/// kink nothing depends on that, and controls alone keep the motion there.
 pub(crate) fn is_attracted(model: &Model, located: &Located, j: usize) -> bool {
     let phase = &located.structure.phases[j];
     let (problem, trajectory) = (&located.chain.phases[j], &located.outcome.phases[j].trajectory);
@@ -98,7 +99,7 @@ pub(crate) fn is_attracted(model: &Model, located: &Located, j: usize) -> bool {
             let is_falling = |at: usize| {
                 slopes(problem, trajectory, row + at, control + at).iter().all(|it| *it < 0.0)
             };
-            if !(0..count).all(is_falling) {
+            if !is_kink(&switch.place.name) && !(0..count).all(is_falling) {
                 return false;
             }
             control += count;

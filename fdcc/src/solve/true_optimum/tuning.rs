@@ -119,6 +119,8 @@ pub(super) mod contacts {
     pub(crate) const FEWEST_OF_ARC: usize = 4;
     /// Where the motion is on a surface for so many intervals, it is held.
     pub(crate) const FEWEST_OF_HOLD: usize = 2;
+    /// A surface is touched where the motion turns nearer to it than this part of its range.
+    pub(crate) const TOUCHED: f64 = 1e-4;
     /// So many intervals beside an arc or a touch point belong to it.
     pub(crate) const NEAR: usize = 2;
 }
@@ -132,6 +134,23 @@ pub(super) mod signs {
 pub(super) mod repair {
     /// A shorter phase, for the whole time, has shrunk to nothing.
     pub(crate) const NOTHING: f64 = 1e-5;
+}
+
+pub(super) mod on_surfaces {
+    /// A surface is 0 that is smaller than this part of what a unit of each state makes of it.
+    pub(crate) const NOTHING: f64 = 1e-12;
+    /// A multiplier counts over this part of that at least,
+    pub(crate) const PRESSED: f64 = 1e-3;
+    /// where the motion is nearer to the surface than this part of its range,
+    pub(crate) const ON: f64 = 1e-5;
+    /// on so many intervals.
+    pub(crate) const FEWEST: usize = 3;
+}
+
+pub(super) mod across_surfaces {
+    /// A surface is reached where it is smaller than this, for its largest value: what the barrier
+    /// of a solve leaves of it where no force pulls.
+    pub(crate) const NEAR: f64 = 1e-4;
 }
 
 pub(super) mod insertion {
@@ -210,4 +229,6 @@ pub(super) mod costates {
     /// Surfaces and conditions say the same where less than this is left of one beside the others,
     /// for its size.
     pub(crate) const SAME: f64 = 1e-10;
+    /// A motion begins or ends on a surface that is smaller than this there, for its largest value.
+    pub(crate) const ON_SURFACE: f64 = 1e-7;
 }

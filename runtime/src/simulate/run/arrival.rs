@@ -88,7 +88,7 @@ impl Run<'_> {
     }
 
     /// Takes away what is left of a ball that is nearly 0.
-    fn project_to_zero(&mut self, ball: &Ball, x: &mut [f64]) {
+    pub fn project_to_zero(&mut self, ball: &Ball, x: &mut [f64]) {
         ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Sliding));
         self.field.project(self.t, x);
         ball.surfaces.clone().for_each(|surface| self.field.set_mode(surface, Mode::Moving));

@@ -3,12 +3,13 @@
 
 use super::Run;
 use crate::simulate::field::correct;
+use crate::simulate::field::direction::length;
 use crate::simulate::location::Condition;
 use crate::simulate::mode::Mode;
 use crate::simulate::modes::decide;
 use crate::simulate::result::{Event, EventKind, Status};
 use crate::simulate::tuning::events::{AT_EXIT, CLEAR, MOST_AT_ONCE, SMALL_WAY};
-use crate::simulate::tuning::field::ON_SURFACE;
+use crate::simulate::tuning::field::{MOMENT, ON_SURFACE};
 use std::collections::BTreeSet;
 
 impl Run<'_> {
@@ -55,6 +56,7 @@ impl Run<'_> {
 
     /// The surfaces that the state is on.
     pub fn surfaces_here(&mut self) -> Vec<usize> {
+        self.stop_what_turns_at_once();
         self.field.find_rounding(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         let is_zero = |i: usize| normals.psi[i].abs() <= ON_SURFACE * normals.noise(i, &self.x);
@@ -67,6 +69,28 @@ impl Run<'_> {
             }
         };
         (0..self.field.modes.len()).filter(is_here).collect()
+    }
+
+    /// Puts moving balls at 0 that are so near to it that they leave it, or turn, within what
+    /// rounding makes of the time: no step can follow that.
+    fn stop_what_turns_at_once(&mut self) {
+        if self.field.moving().is_empty() || self.field.departs(self.t) {
+            return;
+        }
+        let [first, last] = self.field.system.interval;
+        let moment = MOMENT * first.abs().max(last.abs());
+        let rate = self.field.rate(self.t, &self.x);
+        let normals = self.field.normals(self.t, &self.x);
+        for ball in self.field.moving() {
+            let of = |value: &dyn Fn(usize) -> f64| -> f64 {
+                length(&ball.surfaces.clone().map(value).collect::<Vec<f64>>())
+            };
+            if of(&|i| normals.psi[i]) <= moment * of(&|i| normals.rate(i, &rate)) {
+                let mut x = std::mem::take(&mut self.x);
+                self.project_to_zero(ball, &mut x);
+                self.x = x;
+            }
+        }
     }
 
     /// Decides the modes at a point on some surfaces, with the jumps that follow.

@@ -235,3 +235,30 @@ fn one_interval_is_solved() {
         );
     }
 }
+
+/// The guess `u = 0` is stationary for what stands in the way; `sin` is the least way to 0.2.
+#[test]
+fn what_the_guess_does_not_find_is_looked_for_elsewhere() {
+    let text = "time t in [0, 1]  state x start 0  state y start 0  control u in [-10, 10]
+        dynamics { x' = u  y' = x^2 }  end x == 0  end y >= 0.2
+        minimize integral(u^2)";
+    let model = fdcc::Model::from_text("elsewhere", text).expect("it is right");
+    let solution = model.solve(&fdcc::Options::default()).expect("it can be solved");
+    let least = 0.2 * std::f64::consts::PI.powi(2);
+    assert!(solution.is_certified() && (solution.objective() - least).abs() < 1e-6);
+    // As it is, where it is said how it is to be solved.
+    let named = model.with_method("N", 100).expect("a setting");
+    let solution = named.solve(&fdcc::Options::default()).expect("it can be solved");
+    assert!(!solution.is_solved());
+}
+
+/// `sqrt` of the integral has no derivative at the guess; the mean of the force is its size.
+#[test]
+fn a_guess_without_a_value_is_left() {
+    let text = "time t in [0, 2]  state x start 0  control u in [-3, 3]
+        dynamics { x' = u }  end x == 1  minimize sqrt(integral(u^2))";
+    let model = fdcc::Model::from_text("rms", text).expect("it is right");
+    let solution = model.solve(&fdcc::Options::default()).expect("it can be solved");
+    let least = 0.5_f64.sqrt();
+    assert!(solution.is_certified() && (solution.objective() - least).abs() < 1e-8);
+}

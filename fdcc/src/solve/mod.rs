@@ -50,7 +50,7 @@ use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Linear, Method, Problem, often_called};
 use fdcc_runtime::transcribe::{conditions, unknowns};
 use found::Found;
-use tuning::search::OTHER_KERNEL;
+use tuning::search::{OTHER_KERNEL, STARTS};
 
 /// A model with the problem that is solved for it.
 ///
@@ -137,12 +137,25 @@ impl Compiled {
         }
     }
 
-    /// Solves; first without kinks, where there are any.
+    /// Solves; from several other starts where nothing is found from the guess, and the model does
+    /// not name how it is to be discretised.
     ///
     /// # Errors
     ///
     /// See [`Model::solve`].
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
+        let first = self.solve_from(options)?;
+        let is_ours = options.starts <= 1 && !self.model.names_its_discretisation();
+        let is_guessed = is_ours && matches!(options.start, Start::Guess);
+        if !is_guessed || !first.may_be_found_elsewhere() || (options.stop)().is_break() {
+            return Ok(first);
+        }
+        let more = self.solve_from(&Options { starts: STARTS, ..*options })?;
+        Ok(if more.status().is_solved() { more } else { first })
+    }
+
+    /// First without kinks, where there are any.
+    fn solve_from(&self, options: &Options) -> Result<Solution, Error> {
         let without = self.without_kinks.as_ref();
         let own = without.map(|it| kinks::solve(self, it, options)).transpose()?.flatten();
         own.map_or_else(|| kinks::in_time(self, self.solve_as_it_is(options)?, options), Ok)

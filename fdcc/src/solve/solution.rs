@@ -107,6 +107,16 @@ impl Solution {
         &self.model
     }
 
+    /// Whether a solve that begins elsewhere may end better: it found nothing feasible, which is
+    /// not proved to be impossible, or the guess has no value.
+    pub(super) fn may_be_found_elsewhere(&self) -> bool {
+        match self.status() {
+            Status::Infeasible => !self.outcome.is_impossible,
+            Status::NotFinite(_) => self.outcome.solution.counts.iterations == 0,
+            _ => false,
+        }
+    }
+
     /// How the solve ended.
     pub fn status(&self) -> &Status {
         &self.outcome.solution.status

@@ -40,6 +40,8 @@ pub(super) mod search {
     /// Where nothing is certified near the layers of the kernel of our choice: one whose layers
     /// have no edges.
     pub(crate) const OTHER_KERNEL: &str = "sqrt";
+    /// Where nothing is found from the guess so many starts are tried, with that.
+    pub(crate) const STARTS: usize = 5;
 }
 
 pub(super) mod optimality {

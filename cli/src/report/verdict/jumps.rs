@@ -40,7 +40,7 @@ fn is_unfinished(sequence: &Sequence) -> bool {
 /// may have others than what it was found near.
 fn is_found(sequence: &Sequence, document: &Document) -> bool {
     let jumps = document.jumps.iter().map(|it| &it.jump);
-    let is_known = sequence.is_answer || sequence.crosses.is_empty() && document.jumps.len() > 0;
+    let is_known = sequence.is_answer || sequence.crosses.is_empty() && !document.jumps.is_empty();
     is_known && jumps.eq(&sequence.jumps)
 }
 

@@ -34,11 +34,13 @@ impl Signals<'_> {
         let shown = model.states.len();
         let jump = self.from.jumps.iter().find(|it| it.1.time == ends[1]);
         let state = |i: usize| {
-            let column = own.states.get(i).filter(|_| i < shown)?;
-            let mut values: Vec<f64> =
-                times.iter().map(|time| linear(&own.time, column, *time)).collect();
+            let column = own.states.get(i)?;
+            // An integral that became a state is 0 where a phase begins.
+            let before = if i < shown { 0.0 } else { linear(&own.time, column, ends[0]) };
+            let at = |time: &f64| linear(&own.time, column, *time) - before;
+            let mut values: Vec<f64> = times.iter().map(at).collect();
             // At the time of a jump a trajectory has the state behind it.
-            if let (Some((_, jump)), Some(last)) = (jump, values.last_mut()) {
+            if let (Some((_, jump)), Some(last)) = (jump.filter(|_| i < shown), values.last_mut()) {
                 *last = jump.before[i];
             }
             Some(values)

@@ -2,7 +2,7 @@
 //! all differences are known.
 
 use crate::common::{
-    RAMP, column, expect_exit, fdcc, folder, json, model, number, smoothed_race_car, stderr, stdout,
+    RAMP, column, expect_exit, fdcc, folder, json, number, smoothed_race_car, stderr, stdout,
 };
 use serde_json::Value;
 use std::path::Path;

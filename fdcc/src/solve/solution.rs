@@ -110,8 +110,9 @@ impl Solution {
     /// Whether a solve that begins elsewhere may end better: it found nothing feasible, which is
     /// not proved to be impossible, or the guess has no value.
     pub(super) fn may_be_found_elsewhere(&self) -> bool {
+        let is_free = !self.problem.controls.is_empty() || !self.problem.unknowns.is_empty();
         match self.status() {
-            Status::Infeasible => !self.outcome.is_impossible,
+            Status::Infeasible => is_free && !self.outcome.is_impossible,
             Status::NotFinite(_) => self.outcome.solution.counts.iterations == 0,
             _ => false,
         }

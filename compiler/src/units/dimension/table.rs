@@ -18,6 +18,7 @@ const LENGTH: Powers = [0, 1, 0, 0, 0, 0, 0];
 const MASS: Powers = [1, 0, 0, 0, 0, 0, 0];
 const TIME: Powers = [0, 0, 1, 0, 0, 0, 0];
 const CURRENT: Powers = [0, 0, 0, 1, 0, 0, 0];
+const CHARGE: Powers = [0, 0, 1, 1, 0, 0, 0];
 const RATE: Powers = [0, 0, -1, 0, 0, 0, 0];
 const SPEED: Powers = [0, 1, -1, 0, 0, 0, 0];
 const VOLUME: Powers = [0, 3, 0, 0, 0, 0, 0];
@@ -43,7 +44,7 @@ const UNITS: &[(&str, f64, bool, Powers)] = &[
     ("Pa", 1.0, true, PRESSURE),
     ("J", 1.0, true, ENERGY),
     ("W", 1.0, true, [1, 2, -3, 0, 0, 0, 0]),
-    ("C", 1.0, true, [0, 0, 1, 1, 0, 0, 0]),
+    ("C", 1.0, true, CHARGE),
     ("V", 1.0, true, [1, 2, -3, -1, 0, 0, 0]),
     ("F", 1.0, true, [-1, -2, 4, 2, 0, 0, 0]),
     ("ohm", 1.0, true, RESISTANCE),
@@ -67,6 +68,8 @@ const UNITS: &[(&str, f64, bool, Powers)] = &[
     ("bar", 1e5, true, PRESSURE),
     ("atm", 101_325.0, false, PRESSURE),
     ("eV", 1.602_176_634e-19, true, ENERGY),
+    ("Wh", 3600.0, true, ENERGY),
+    ("Ah", 3600.0, true, CHARGE),
     ("°", PI / 180.0, false, NONE),
     ("%", 1e-2, false, NONE),
     ("percent", 1e-2, false, NONE),

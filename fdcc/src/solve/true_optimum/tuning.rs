@@ -175,7 +175,8 @@ pub(super) mod range {
 
 pub(super) mod minimum {
     /// Where the Hamiltonian of a phase is looked at, as parts of its time.
-    pub(crate) const PARTS: [f64; 5] = [0.0, 0.15, 0.5, 0.85, 1.0];
+    pub(crate) const PARTS: [f64; 13] =
+        [0.0, 0.08, 0.15, 0.24, 0.32, 0.41, 0.5, 0.59, 0.68, 0.76, 0.85, 0.92, 1.0];
     /// The same on its first interval, and mirrored on its last: between nodes, where a control
     /// that is steep at an end differs most from a polynomial.
     pub(crate) const BESIDE: [f64; 2] = [0.035, 0.2];

@@ -34,6 +34,7 @@ const CERTIFIED: &[&str] = &[
     "switched/gear_loss",
     "switched/hard_pull",
     "switched/heater",
+    "switched/hysteresis_car",
     "switched/ice_patch",
     "switched/load_lets_go",
     "switched/moving_wall",
@@ -75,7 +76,6 @@ const LEFT_OUT: &[&str] = &[
     "right/sled_on_ice",
     "switched/billiard",
     "switched/fan",
-    "switched/hysteresis_car",
 ];
 
 /// A row of the table of references.

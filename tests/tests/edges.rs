@@ -67,6 +67,38 @@ fn what_moves_the_start_off_its_surface_has_a_kink() {
     assert!(of("a").is_some_and(|it| (it - 1.0).abs() < 1e-8));
 }
 
+/// A puck from rest to rest: `2 mu |v|` is saved or lost at either end.
+#[test]
+fn what_moves_the_start_off_rest_has_a_kink_under_a_direction_too() {
+    let text = "param vx0 = 0  param ve = 0  param mu = 0.5  param T = 3  time t in [0, T]
+        state p(x, y) start (0, 0)  state v(x, y) start (vx0, 0)  control u(x, y) in [-9, 9]
+        dynamics { p' = v  v' in u - mu*Dir(v) }
+        end p == (0.6, 0.8)  end v == (ve, 0)  minimize integral(normsq(u))";
+    let solution = solved(text);
+    assert!(solution.is_certified());
+    let all = solution.sensitivities();
+    let of = |name: &str| all.iter().find(|it| it.0 == name).map_or(f64::NAN, |it| it.1);
+    assert!(of("vx0").is_nan() && of("ve").is_nan(), "{all:?}");
+    assert!(of("mu").is_finite() && of("T").is_finite(), "{all:?}");
+}
+
+/// Both sides of a kink are the same: a start on it that leaves it is as good as any other.
+#[test]
+fn a_start_on_a_continuous_kink_has_a_slope() {
+    let text = "param x0 = 0  time t in [0, 1]  state x start x0  control u
+        dynamics { x' = u - 0.5*abs(x) }  end x == 1  minimize integral(u^2)";
+    let model = Model::from_text("a kink", text).expect("it is right");
+    let at = |x0: f64| {
+        let model = model.with("x0", x0).expect("a parameter");
+        model.solve(&Options::default()).expect("it can be solved")
+    };
+    let (before, own, after) = (at(-1e-4), at(0.0), at(1e-4));
+    assert!(own.is_certified());
+    let slope = (after.objective() - before.objective()) / 2e-4;
+    let told = own.sensitivities().iter().find(|it| it.0 == "x0").map_or(f64::NAN, |it| it.1);
+    assert!((told - slope).abs() < 1e-3 * slope.abs(), "{told} and {slope}");
+}
+
 /// `abs` of the function of a surface is its selector times that function: the same model without.
 #[test]
 fn a_kink_on_a_declared_surface_is_that_surface() {

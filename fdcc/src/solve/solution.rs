@@ -5,6 +5,7 @@ use super::found::{Found, Jump, Phases, Sequence};
 use super::phases::Whole;
 use super::report::Ended;
 use super::true_optimum::Certificate;
+use super::tuning::search::INFEASIBLE;
 use crate::error::Error;
 use crate::model::Model;
 use crate::names::status_name;
@@ -113,6 +114,9 @@ impl Solution {
         let is_free = !self.problem.controls.is_empty() || !self.problem.unknowns.is_empty();
         match self.status() {
             Status::Infeasible => is_free && !self.outcome.is_impossible,
+            Status::IterationLimit => {
+                is_free && self.outcome.solution.constraint_violation > INFEASIBLE
+            }
             Status::NotFinite(_) => self.outcome.solution.counts.iterations == 0,
             _ => false,
         }

@@ -42,6 +42,9 @@ pub(super) mod search {
     pub(crate) const OTHER_KERNEL: &str = "sqrt";
     /// Where nothing is found from the guess so many starts are tried, with that.
     pub(crate) const STARTS: usize = 5;
+    /// A solve that ended at its limit of iterations and violates a condition by more found nothing
+    /// feasible.
+    pub(crate) const INFEASIBLE: f64 = 1e-6;
 }
 
 pub(super) mod optimality {

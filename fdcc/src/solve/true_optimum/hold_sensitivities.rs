@@ -11,7 +11,7 @@ use super::Located;
 use super::costates::Hold;
 use super::point::point_of;
 use super::tuning::costates::{ON_SURFACE, SAME};
-use fdcc_compiler::{HoldNormals, Mode, Model, Slopes};
+use fdcc_compiler::{HoldNormals, Mode, Model, Slopes, is_kink};
 use fdcc_runtime::problem::Problem;
 use nalgebra::{DMatrix, DVector};
 
@@ -63,7 +63,8 @@ impl Located {
         kinks(normals.slopes(&point), normals.slopes_of_ends(&point), model.params.len())
     }
 
-    /// The surfaces that are 0 at the first (0) or the last (1) time, and are not held there.
+    /// The surfaces that are 0 at the first (0) or the last (1) time, and are not held there; all
+    /// components of a `Dir`. What is continuous on a kink has none there.
     fn touched(&self, model: &Model, problem: &Problem, end: usize) -> Vec<usize> {
         let whole = self.whole(problem).outcome.trajectory;
         let phases = &self.structure.phases;
@@ -73,9 +74,9 @@ impl Located {
             let psi = &whole.switching[*at];
             let largest = psi.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
             let is_zero = psi[end * (psi.len() - 1)].abs() <= ON_SURFACE * largest;
-            **mode != Mode::Held && !switch.is_ball && is_zero
+            **mode != Mode::Held && !is_kink(&switch.place.name) && is_zero
         });
-        touched.map(|(_, (switch, _))| switch.surfaces.start).collect()
+        touched.flat_map(|(_, (switch, _))| switch.surfaces).collect()
     }
 }
 

@@ -28,7 +28,7 @@ pub(super) fn solve(
         _ => None,
     };
     let start = record.as_ref().map_or(options.start, Start::Record);
-    let found = without.solve(&Options { start, ..*options })?;
+    let found = without.solve_from(&Options { start, ..*options })?;
     let (was_certified, first) = match certified(own, &found) {
         Some(first) => (true, first),
         None => {
@@ -105,7 +105,7 @@ fn located(own: &Compiled, first: &Solution, options: &Options) -> Result<Option
 fn near(model: &Model, found: &Solution, options: &Options) -> Result<Solution, Error> {
     let record = record(found);
     let start = if found.status().is_solved() { Start::Record(&record) } else { options.start };
-    model.compile_as_it_is(None)?.solve(&Options { start, ..*options })
+    model.compile_as_it_is(None)?.solve_from(&Options { start, ..*options })
 }
 
 /// Whether it is an answer to the model with its kinks, or there is none, or it was stopped. What

@@ -154,7 +154,7 @@ impl Compiled {
         Ok(if more.status().is_solved() { more } else { first })
     }
 
-    /// First without kinks, where there are any.
+    /// From the starts that were asked for; first without kinks, where there are any.
     fn solve_from(&self, options: &Options) -> Result<Solution, Error> {
         let without = self.without_kinks.as_ref();
         let own = without.map(|it| kinks::solve(self, it, options)).transpose()?.flatten();

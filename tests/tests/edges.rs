@@ -186,3 +186,18 @@ fn a_factor_before_a_vector_rate_makes_no_difference() {
     assert!(half.is_certified());
     expect(&text("2*v' in u - 0.8*Dir(v)"), half.objective());
 }
+
+/// Three charges in as much of the time as there is cost more than `6 / (1 - e^-2)`, and come as
+/// near to that as one likes. The number of spikes is a condition and follows from their sequence:
+/// its multiplier may be anything, and must not excuse what is not stationary.
+#[test]
+fn large_multipliers_excuse_nothing() {
+    let text = "time t in [0, 3]  state v start 0  state n start 0  control I in [0, 10] guess 2
+        surface level = v - 1  dynamics { v' = I - v  n' = 0 }
+        jump spike on level rising at most 4 { v := 0  n := n + 1 }
+        end n >= 3  minimize integral(I^2)";
+    let solution = solved(text);
+    let least = 6.0 / (1.0 - (-2.0_f64).exp());
+    let off = solution.objective() - least;
+    assert!(!solution.is_certified() || off < 1e-6, "{off}");
+}

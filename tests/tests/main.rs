@@ -39,6 +39,7 @@ mod hostile;
 mod jumps;
 mod jumps_in_chains;
 mod kinks;
+mod kinks_in_phases;
 mod kinks_of_optima;
 mod located_fits;
 mod manual;

@@ -21,6 +21,7 @@
 //! A condition with kinks is one for each side of them, where that says the same ([`mod@sides`]).
 
 mod bent;
+mod in_phases;
 mod sides;
 
 use crate::expressions::blend::sides;
@@ -50,32 +51,16 @@ pub enum Kinks {
 ///
 /// What is new stands behind what the model declares: controls with a path condition each, unknowns
 /// with a condition at the ends each, surfaces.
+///
+/// In a model with phases each of them is such a model, and what is new has a number of its own.
 pub fn without_kinks(model: &Model, kinks: Kinks, is_true: bool) -> Option<Model> {
-    let is_smoothed = model.smooth && model.method.names_width();
-    let is_whole = model.phases.is_empty() && model.not_yet.is_empty() && model.sums.is_empty();
+    if !model.phases.is_empty() {
+        return in_phases::without(model, kinks, is_true);
+    }
     // Without an objective nothing draws the unknowns to their bounds.
-    if is_smoothed || !is_whole || model.objective.is_none() {
-        return None;
-    }
-    let bent = Bent::of(model);
-    if kinks == Kinks::Located && !(is_true && bent.has_more_surfaces()) {
-        return None;
-    }
-    let mut without = Without {
-        own: model.clone(),
-        bent: &bent,
-        kinks,
-        is_true,
-        all: Vec::new(),
-        has_declared: false,
-    };
-    without.rewrite();
-    let is_divided = without.divide_conditions();
-    if let Kinks::Priced(price) = kinks {
-        without.charge(price);
-    }
-    let is_changed = is_divided || without.has_declared || !without.all.is_empty();
-    is_changed.then_some(without.own)
+    let is_asked = model.not_yet.is_empty() && model.objective.is_some();
+    let without = is_asked.then(|| Without::of(model, kinks, is_true, 0)).flatten();
+    without.map(|it| it.own)
 }
 
 /// Whether a name is that of something that stands for a kink; no name of a model is.
@@ -154,17 +139,40 @@ struct Standing {
     value: ExprId,
 }
 
-struct Without<'m> {
+struct Without {
     own: Model,
-    bent: &'m Bent,
+    bent: Bent,
     kinks: Kinks,
     is_true: bool,
     all: Vec<Standing>,
+    /// How many stand for the kinks of other phases.
+    others: usize,
     /// Whether a surface of the model stands for a kink.
     has_declared: bool,
 }
 
-impl Without<'_> {
+impl Without {
+    /// Nothing where the model has no kinks, or says how wide they are to be smoothed.
+    fn of(model: &Model, kinks: Kinks, is_true: bool, others: usize) -> Option<Self> {
+        let is_smoothed = model.smooth && model.method.names_width();
+        if is_smoothed || !model.sums.is_empty() {
+            return None;
+        }
+        let bent = Bent::of(model);
+        if kinks == Kinks::Located && !(is_true && bent.has_more_surfaces()) {
+            return None;
+        }
+        let (own, all, has_declared) = (model.clone(), Vec::new(), false);
+        let mut without = Without { own, bent, kinks, is_true, all, others, has_declared };
+        without.rewrite();
+        let is_divided = without.divide_conditions();
+        if let Kinks::Priced(price) = kinks {
+            without.charge(price);
+        }
+        let is_changed = is_divided || without.has_declared || !without.all.is_empty();
+        is_changed.then_some(without)
+    }
+
     fn rewrite(&mut self) {
         let roots = roots(&self.own);
         let mut graph = std::mem::take(&mut self.own.graph);
@@ -181,11 +189,11 @@ impl Without<'_> {
 
     /// The value of a kink by what stands for it.
     fn replaced(&mut self, graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<ExprId> {
-        let (kind, place) = self.bent.kinks.get(&original)?;
+        let (kind, place) = self.bent.kinks.get(&original)?.clone();
         let kind = match kind {
             Kind::Either | Kind::Timed if self.kinks == Kinks::Located => Kind::Surface,
             Kind::Either => Kind::Along,
-            other => *other,
+            other => other,
         };
         let is_left = kind == Kind::Timed || kind == Kind::Surface && !self.is_true;
         let kink = Kink::of(graph, original, rebuilt).filter(|_| !is_left)?;
@@ -195,7 +203,7 @@ impl Without<'_> {
             _ => kink.e,
         };
         let known = self.known(graph, e);
-        let (kind, value) = known.unwrap_or_else(|| (kind, self.stand(graph, kind, place, e)));
+        let (kind, value) = known.unwrap_or_else(|| (kind, self.stand(graph, kind, &place, e)));
         Some(match kind {
             Kind::Surface => kink.with_selector(graph, value),
             _ => kink.with_unknown(graph, value),
@@ -241,7 +249,8 @@ impl Without<'_> {
         let input = Symbols { graph, symbols: &mut self.own.symbols }.input(symbol);
         let value = graph.input(input);
         self.all.push(Standing { kind, e, value });
-        let place = Place { name: format!("{NAME}{}", self.all.len()), ..place.clone() };
+        let name = format!("{NAME}{}", self.others + self.all.len());
+        let place = Place { name, ..place.clone() };
         let [lower, upper] = [0.0, f64::INFINITY].map(|it| graph.number(it));
         let range = Range { lower, upper };
         let row = Constraint { place: place.clone(), value: graph.add(value, e), range };
@@ -305,7 +314,10 @@ impl Without<'_> {
         let integral = self.own.graph.input(input);
         let gap = self.own.graph.add(integral, at_ends);
         let charge = self.own.graph.scale(self.own.sense * price, gap);
-        let graph = &mut self.own.graph;
-        self.own.objective.iter_mut().for_each(|it| it.1 = graph.add(it.1, charge));
+        let (place, known) = self.own.objective.take().unwrap_or_else(|| {
+            let nothing = self.own.graph.number(0.0);
+            (self.own.states[0].place.clone(), nothing)
+        });
+        self.own.objective = Some((place, self.own.graph.add(known, charge)));
     }
 }

@@ -182,9 +182,16 @@ impl Model {
     /// Whether a grid is named, or the width of layers where there are any: then the optimum of
     /// that is meant, and not that of the system that was written.
     pub(crate) fn names_its_discretisation(&self) -> bool {
-        let is_smooth = self.meaning.surfaces.is_empty() && self.meaning.jumps.is_empty();
-        let method = &self.meaning.method;
-        if is_smooth { method.names_grid } else { method.names_width() }
+        let phases = self.meaning.phases.iter().map(|it| &it.model);
+        let all: Vec<&fdcc_compiler::Model> = match self.meaning.phases.is_empty() {
+            true => vec![&self.meaning],
+            false => phases.collect(),
+        };
+        let is_smooth = |it: &&fdcc_compiler::Model| it.surfaces.is_empty() && it.jumps.is_empty();
+        match all.iter().all(|it| is_smooth(it)) {
+            true => all.iter().any(|it| it.method.names_grid),
+            false => all.iter().any(|it| !is_smooth(it) && it.method.names_width()),
+        }
     }
 
     /// Does once for all values of its parameters what makes its functions ready.

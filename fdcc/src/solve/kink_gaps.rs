@@ -37,7 +37,13 @@ impl Gap {
     }
 }
 
-fn gaps(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
+/// Those of all phases.
+fn gaps(found: &Solution) -> Vec<Gap> {
+    let gaps = |it: &Solution| gaps_of(&it.problem, &it.outcome.trajectory);
+    pieces(found).iter().flat_map(gaps).collect()
+}
+
+fn gaps_of(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
     let rows = path_conditions(problem, trajectory);
     let limit = if trajectory.nodes.is_some() { LOOSE } else { TIGHT };
     let gap = |(control, unknown): (&Variable, &Vec<f64>)| {
@@ -84,16 +90,33 @@ fn gaps_of_ends(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
 /// Whether one of the two conditions on each unknown that stands for a kink is an equality: at all
 /// times, or on average where controls are known by their means on intervals only.
 pub(super) fn is_tight(problem: &Problem, trajectory: &Trajectory) -> bool {
-    gaps(problem, trajectory).iter().all(Gap::is_none)
+    gaps_of(problem, trajectory).iter().all(Gap::is_none)
+}
+
+/// Whether that is so in all phases.
+pub(super) fn are_tight(found: &Solution) -> bool {
+    gaps(found).iter().all(Gap::is_none)
 }
 
 /// So high that what an answer gains by gaps counts little beside what they cost.
 pub(super) fn first_price(found: &Solution) -> f64 {
-    let (time, trajectory) = (found.time(), &found.outcome.trajectory);
-    let scale = trajectory.hamiltonian.scale * (time[time.len() - 1] - time[0]);
-    let size = found.objective().abs().max(scale);
+    let size = size_of_objective(found);
     let size = if size > NOTHING { size } else { 1.0 };
-    let squares = gaps(&found.problem, trajectory).iter().map(|it| it.square).sum::<f64>();
+    let squares = gaps(found).iter().map(|it| it.square).sum::<f64>();
     let price = PRICE * size / squares;
     if found.status().is_solved() && price.is_finite() { price } else { PRICE }
+}
+
+/// The size of the objective, or of what is integrated to it.
+pub(super) fn size_of_objective(found: &Solution) -> f64 {
+    let scale = |it: &Solution| {
+        let time = it.time();
+        it.outcome.trajectory.hamiltonian.scale * (time[time.len() - 1] - time[0])
+    };
+    pieces(found).iter().map(scale).fold(found.objective().abs(), f64::max)
+}
+
+/// The solutions of all phases; itself where there are none.
+fn pieces(found: &Solution) -> &[Solution] {
+    if found.parts.is_empty() { std::slice::from_ref(found) } else { &found.parts }
 }

@@ -1,14 +1,56 @@
 //! An answer in the words of the model that has the kinks.
 
 use super::found::Phases;
+use super::phases::Whole;
 use super::true_optimum::Stretch;
 use super::{Compiled, Solution};
+use crate::model::frame;
 use fdcc_compiler::{is_kink, side_of};
 use fdcc_runtime::problem::{Chain, Function, Problem};
 use fdcc_runtime::solution::{ChainOutcome, Outcome, Trajectory};
 
 /// The answer without what stands for kinks.
 pub(super) fn in_words_of(own: &Compiled, mut found: Solution) -> Solution {
+    if let Some(it) = &mut found.certificate {
+        it.arcs = in_words(std::mem::take(&mut it.arcs));
+        it.switches.retain(|switch| !is_kink(of_phase(&switch.surface).1));
+    }
+    match found.whole.take() {
+        Some(whole) => of_phases(own, found, whole),
+        None => of_one_piece(own, found),
+    }
+}
+
+/// Phase by phase: the chain of the model with the grids and the signals of what was found.
+fn of_phases(own: &Compiled, mut found: Solution, whole: Whole) -> Solution {
+    let seen = Phases {
+        model: found.model().meaning().clone(),
+        chain: whole.chain.clone(),
+        outcome: whole.outcome.clone(),
+    };
+    found.between_jumps.get_or_insert(seen);
+    let Whole { mut chain, mut outcome } = whole;
+    let all = chain.phases.iter_mut().zip(&mut outcome.phases).zip(&own.chain.phases);
+    for ((seen, outcome), own) in all {
+        let problem = Problem { method: seen.method.clone(), ..own.clone() };
+        *outcome = without(seen, &problem, outcome);
+        *seen = problem;
+    }
+    chain = Chain { phases: chain.phases, ..own.chain.clone() };
+    let models = own.model.phases().into_iter().zip(&chain.phases).zip(&outcome.phases);
+    for (part, ((model, problem), outcome)) in found.parts.iter_mut().zip(models) {
+        let own = part.clone().of_model(model, problem.clone(), outcome.clone());
+        *part = own;
+    }
+    let problem = frame(&chain);
+    let kept = found.outcome.trajectory.parameters.len().min(problem.parameters.len());
+    found.outcome.trajectory.parameters.truncate(kept);
+    found.whole = Some(Whole { chain, outcome });
+    let outcome = found.outcome.clone();
+    found.of_model(own.model.clone(), problem, outcome)
+}
+
+fn of_one_piece(own: &Compiled, mut found: Solution) -> Solution {
     let method = found.problem.method.clone();
     let problem = Problem { method, ..own.problem.clone() };
     let outcome = without(&found.problem, &problem, &found.outcome);
@@ -18,10 +60,6 @@ pub(super) fn in_words_of(own: &Compiled, mut found: Solution) -> Solution {
         outcome: ChainOutcome::single(found.outcome.clone()),
     };
     found.between_jumps.get_or_insert(seen);
-    if let Some(it) = &mut found.certificate {
-        it.arcs = in_words(std::mem::take(&mut it.arcs));
-        it.switches.retain(|switch| !is_kink(&switch.surface));
-    }
     found.of_model(own.model.clone(), problem, outcome)
 }
 
@@ -30,14 +68,21 @@ pub(super) fn in_words_of(own: &Compiled, mut found: Solution) -> Solution {
 fn in_words(arcs: Vec<(String, Vec<Stretch>)>) -> Vec<(String, Vec<Stretch>)> {
     let mut own: Vec<(String, Vec<Stretch>)> = Vec::new();
     for (name, stretches) in arcs {
-        let of = side_of(&name).map(str::to_owned);
+        let (phase, side) = of_phase(&name);
+        let of = side_of(side).map(|it| format!("{phase}{it}"));
         match own.iter_mut().find(|it| Some(&it.0) == of.as_ref()) {
             Some((_, known)) => *known = both(known, &stretches),
             None => own.push((of.unwrap_or(name), stretches)),
         }
     }
-    own.retain(|it| !is_kink(&it.0));
+    own.retain(|it| !is_kink(of_phase(&it.0).1));
     own
+}
+
+/// A name, after what says of which phase it is.
+fn of_phase(name: &str) -> (&str, &str) {
+    let at = name.find('.').map_or(0, |at| at + 1);
+    if is_kink(&name[at..]) { name.split_at(at) } else { ("", name) }
 }
 
 /// At a bound where one of two is.

@@ -4,7 +4,7 @@
 //! one of both is 0 at all times; then the controls that the model has are an optimum of it, as
 //! what it allows is a part of what was allowed. Where neither is, `q (q + e)` gets a price.
 
-use super::kink_gaps::{first_price, is_tight};
+use super::kink_gaps::{are_tight, first_price, size_of_objective};
 use super::kink_words::in_words_of;
 use super::report::{Options, Start};
 use super::tuning::kinks::{EXACT, HIGHER, MOST_PRICES};
@@ -22,9 +22,8 @@ pub(super) fn solve(
     without: &Compiled,
     options: &Options,
 ) -> Result<Option<Solution>, Error> {
-    // Nodes of controls have to be those of all controls.
     let record = match options.start {
-        Start::Record(it) => Some(Record { nodes: None, ..it.clone() }),
+        Start::Record(it) => Some(without_nodes(it.clone())),
         _ => None,
     };
     let start = record.as_ref().map_or(options.start, Start::Record);
@@ -112,8 +111,7 @@ fn near(model: &Model, found: &Solution, options: &Options) -> Result<Solution, 
 /// is proved to have no solution has none with kinks either.
 fn is_end(found: &Solution, options: &Options) -> bool {
     let is_infeasible = matches!(found.status(), Status::Infeasible) && found.outcome.is_impossible;
-    let is_answer =
-        || found.status().is_solved() && is_tight(&found.problem, &found.outcome.trajectory);
+    let is_answer = || found.status().is_solved() && are_tight(found);
     // An answer with gaps that came just in time is no answer.
     let is_stopped = (options.stop)().is_break() && !found.status().is_solved();
     is_stopped || is_infeasible || is_answer()
@@ -127,10 +125,15 @@ fn with_kinks(own: &Compiled, found: Solution) -> Solution {
 
 /// Without what stands for kinks, which may be anything where nothing forbids it.
 fn record(found: &Solution) -> Record<'_> {
-    let mut record = found.record();
+    without_nodes(found.record())
+}
+
+/// Nodes of controls have to be those of all controls.
+fn without_nodes(record: Record) -> Record {
+    let mut record = Record { nodes: None, ..record };
     record.controls.retain(|it| !is_kink(it.0));
     record.free.retain(|it| !is_kink(it.0));
-    record.nodes = None;
+    record.phases = record.phases.into_iter().map(without_nodes).collect();
     record
 }
 
@@ -139,19 +142,17 @@ fn replay_again(own: &mut Solution) {
     if !own.is_certified() {
         return;
     }
-    let replay = own.verify().ok();
     let unknown = f64::INFINITY;
-    let hamiltonian = &own.outcome.trajectory.hamiltonian;
-    let time = own.time();
-    let size = own.objective().abs().max(hamiltonian.scale * (time[time.len() - 1] - time[0]));
-    let objective = |it: &Verification| {
-        it.simulation.objective.map_or(unknown, |its| (its - own.objective()).abs() / size)
+    let replays = own.replays().unwrap_or_default();
+    let worst = |figure: fn(&Verification) -> f64| {
+        let all = replays.iter().map(figure).fold(0.0, f64::max);
+        if replays.is_empty() { unknown } else { all }
     };
-    let violated = |it: &Verification| it.worst().map_or(0.0, |it| it.part);
+    let replayed = own.objective_of(&replays).unwrap_or(unknown);
     let figures = [
-        ("replayed", replay.as_ref().and_then(Verification::state_gap).unwrap_or(unknown)),
-        ("objective", replay.as_ref().map_or(unknown, objective)),
-        ("conditions", replay.as_ref().map_or(unknown, violated)),
+        ("replayed", worst(|it| it.state_gap().unwrap_or(f64::INFINITY))),
+        ("objective", (replayed - own.objective()).abs() / size_of_objective(own)),
+        ("conditions", worst(|it| it.worst().map_or(0.0, |it| it.part))),
     ];
     for check in own.certificate.iter_mut().flat_map(|it| &mut it.checks) {
         let again = figures.iter().find(|it| it.0 == check.name);

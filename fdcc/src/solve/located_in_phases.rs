@@ -4,15 +4,15 @@
 use super::Solution;
 use super::certify::{accuracy, certificate, size_of_objective};
 use super::found::{FoundChain, Phases};
+use super::kink_gaps::is_tight;
 use super::located::{grid, may_be_near, most_halvings};
-use super::phases::Whole as WholeChain;
 use super::report::Options;
 use super::true_optimum::{
     Certificate, Check, Contacts, Located, Part, Spent, Whole, halved_in_phases, locate_in_phases,
     polished_in_phases,
 };
 use crate::model::Model;
-use crate::verification::{LinkGap, Verification, objective_of_links};
+use crate::verification::{LinkGap, Verification};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Method, Problem};
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
@@ -160,7 +160,6 @@ fn largest(gaps: &[LinkGap]) -> f64 {
 
 /// The difference between the objective of the replays and that of the plan, for its size.
 fn gap_of_objective(located: &[Located], solution: &Solution, replays: &[Verification]) -> f64 {
-    let Some(WholeChain { chain, .. }) = &solution.whole else { return f64::INFINITY };
     if !solution.problem.has_objective {
         return 0.0;
     }
@@ -168,11 +167,7 @@ fn gap_of_objective(located: &[Located], solution: &Solution, replays: &[Verific
     let phases = solution.model().meaning().phases.iter();
     let sizes = located.iter().zip(phases).map(|(it, of)| size_of_objective(it, &of.model));
     let size = own.abs().max(sizes.fold(0.0, f64::max));
-    let of_phases: f64 = replays.iter().filter_map(|it| it.simulation.objective).sum();
-    let linked = solution.problem.sense * objective_of_links(chain, &solution.record(), replays);
-    let is_whole = replays.iter().all(|it| it.is_whole);
-    let gap = (of_phases + linked - own).abs() / size;
-    if is_whole { gap } else { f64::INFINITY }
+    solution.objective_of(replays).map_or(f64::INFINITY, |it| (it - own).abs() / size)
 }
 
 fn smoothed(outcome: &Outcome) -> Whole {
@@ -204,7 +199,9 @@ fn problem(part: &Part, located: &Located, outcome: &Outcome) -> Problem {
 /// named; else because no phase says on how many intervals.
 fn asks_for_truth(model: &Model, found: &FoundChain) -> bool {
     let phases = || model.meaning().phases.iter().map(|it| &it.model);
-    if phases().any(|it| !it.are_sums_terms()) {
+    let mut pieces = found.chain.phases.iter().zip(&found.outcome.phases);
+    let are_tight = pieces.all(|(problem, it)| is_tight(problem, &it.trajectory));
+    if !are_tight || phases().any(|it| !it.are_sums_terms()) {
         return false;
     }
     let mut switched = phases().filter(|it| !it.surfaces.is_empty()).peekable();

@@ -5,7 +5,7 @@ use super::solution::Solution;
 use crate::error::Error;
 use crate::model::{Model, frame};
 use crate::record::Record;
-use crate::verification::{LinkGap, Verification, verify_phases};
+use crate::verification::{LinkGap, Verification, objective_of_links, verify_phases};
 use fdcc_runtime::problem::Chain;
 use fdcc_runtime::solution::Trajectory;
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
@@ -59,6 +59,25 @@ impl Solution {
     pub fn verify_phases(&self) -> Result<(Vec<Verification>, Vec<LinkGap>), Error> {
         let Some(Whole { chain, .. }) = &self.whole else { return Ok((Vec::new(), Vec::new())) };
         verify_phases(self.model().meaning(), chain, &self.record())
+    }
+
+    /// The replays of all phases, or of the one piece that it is.
+    pub(super) fn replays(&self) -> Result<Vec<Verification>, Error> {
+        match self.whole {
+            Some(_) => self.verify_phases().map(|it| it.0),
+            None => self.verify().map(|it| vec![it]),
+        }
+    }
+
+    /// The objective of replays, as the model writes it; nothing where one did not reach its end.
+    pub(super) fn objective_of(&self, replays: &[Verification]) -> Option<f64> {
+        let is_whole = !replays.is_empty() && replays.iter().all(|it| it.is_whole);
+        let Some(Whole { chain, .. }) = self.whole.as_ref().filter(|_| is_whole) else {
+            return replays.first().filter(|_| is_whole)?.simulation.objective;
+        };
+        let of_phases: f64 = replays.iter().filter_map(|it| it.simulation.objective).sum();
+        let of_links = objective_of_links(chain, &self.record(), replays);
+        Some(of_phases + self.problem.sense * of_links)
     }
 }
 

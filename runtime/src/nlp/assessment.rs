@@ -86,6 +86,11 @@ impl Assessment {
         Assessment { slope: self.slope.min(decrement / self.size), ..self }
     }
 
+    /// What the multipliers say the objective can still gain, relative to its size.
+    pub(crate) fn improvement(&self) -> f64 {
+        self.complementarity + self.slope
+    }
+
     /// Whether all but the gradient of the Lagrangian is as it should be.
     pub(crate) fn is_only_steep(&self, tol: f64) -> bool {
         self.is_feasible(tol)
@@ -100,18 +105,18 @@ impl Assessment {
 
     /// Whether it may be called a solution to this tolerance.
     pub(crate) fn is_convincing(&self, tol: f64) -> bool {
-        self.is_feasible(tol) && self.complementarity + self.slope <= most_improvement(tol)
+        self.is_feasible(tol) && self.improvement() <= most_improvement(tol)
     }
 
     /// Whether it is as good as is aimed at.
     pub(crate) fn is_enough(&self, tol: f64) -> bool {
-        self.is_feasible(tol) && self.complementarity + self.slope <= AIM * most_improvement(tol)
+        self.is_feasible(tol) && self.improvement() <= AIM * most_improvement(tol)
     }
 
     /// What is aimed at, relative to what is there: the smaller the further away.
     pub(crate) fn missed(&self, tol: f64) -> f64 {
         let feasible = (tol / self.violation).min(SPREAD * tol / self.spread);
-        feasible.min(AIM * most_improvement(tol) / (self.complementarity + self.slope))
+        feasible.min(AIM * most_improvement(tol) / self.improvement())
     }
 
     /// What an objective has to gain to count.
@@ -122,7 +127,7 @@ impl Assessment {
     /// Whether it is good enough for most uses.
     pub(crate) fn is_acceptable(&self, tol: f64) -> bool {
         self.is_feasible(tol.max(ACCEPTABLE_VIOLATION))
-            && self.complementarity + self.slope <= ACCEPTABLE_IMPROVEMENT.max(tol)
+            && self.improvement() <= ACCEPTABLE_IMPROVEMENT.max(tol)
     }
 }
 

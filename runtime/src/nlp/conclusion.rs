@@ -27,12 +27,12 @@ pub(super) struct Ended {
 pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> Solution {
     let Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts } =
         ended;
-    let status = if options.is_final {
+    let (mut status, mut improvement) = (status, f64::INFINITY);
+    if options.is_final {
         let assessment = Assessment::new(nlp, &v, &multipliers).with_decrement(decrement);
-        judged(status, &assessment, is_saddle, options.tol)
-    } else {
-        status
-    };
+        improvement = assessment.improvement();
+        status = judged(status, &assessment, is_saddle, options.tol);
+    }
     let objective = nlp.values(&v, &mut vec![0.0; multipliers.constraints.len()]);
     let status = if status.is_solved() && !objective.is_finite() {
         Status::NotFinite(nlp.not_finite(&v).unwrap_or_default())
@@ -48,6 +48,7 @@ pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> So
         mu,
         objective,
         kkt_error,
+        improvement,
         constraint_violation,
         global,
         is_saddle,

@@ -312,6 +312,9 @@ pub struct Solution {
     pub objective: f64,
     /// Scaled optimality error.
     pub kkt_error: f64,
+    /// What the multipliers say the objective can still gain, relative to its size, in the program
+    /// as it was written; infinite on the way to another solve.
+    pub improvement: f64,
     /// Largest violation of a constraint or bound.
     pub constraint_violation: f64,
     /// Whether the optimum is known to be global.

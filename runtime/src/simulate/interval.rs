@@ -42,9 +42,13 @@ pub(crate) fn both(a: Interval, b: Interval) -> Interval {
     if low <= high { [low, high] } else { b }
 }
 
+/// The greatest distance from 0.
+pub(crate) fn size(a: Interval) -> f64 {
+    a[0].abs().max(a[1].abs())
+}
+
 /// The length of a vector.
 pub(crate) fn length(vector: impl Iterator<Item = Interval>) -> Interval {
-    let size = |a: Interval| a[0].abs().max(a[1].abs());
     let least =
         |a: Interval| if a[0] <= 0.0 && a[1] >= 0.0 { 0.0 } else { a[0].abs().min(a[1].abs()) };
     let squares = vector.map(|a| [least(a).powi(2), size(a).powi(2)]);

@@ -144,6 +144,8 @@ pub(crate) mod discontinuity {
 pub(crate) mod extremes {
     /// How exact an extreme is, as a part of the values near it.
     pub(crate) const EXACT: f64 = 1e-9;
+    /// And as a part of the terms that cancel there: what is held at 0 has no greatest value.
+    pub(crate) const EXACT_OF_TERMS: f64 = 1e-13;
     /// More parts than this of one step are not looked at.
     pub(crate) const MOST_PARTS: usize = 1000;
 }

@@ -3,14 +3,13 @@
 //! Where a limit is bounded by an inequality, its multiplier says on which intervals it is active.
 
 use super::Located;
+use super::path_values::{path_values, slopes};
 use super::tracks::Track;
 use super::tuning::contacts::{
     FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN, TOUCHED,
 };
 use super::tuning::structure::SHORTEST;
 use fdcc_compiler::{Arc, Limit, Mode, Model, PhaseOfModes, Switch, limits, may_hold};
-use fdcc_runtime::problem::{Columns, Problem};
-use fdcc_runtime::solution::Trajectory;
 
 /// The limits of a model along a located trajectory.
 pub(crate) struct Contacts<'l> {
@@ -322,9 +321,27 @@ impl<'l> Contacts<'l> {
         if self.limits[limit].order == Some(0) {
             let bounds = self.located.chain.phases[0].path_bounds[self.row(0, limit)];
             let sizes = [bounds.lower, bounds.upper].into_iter().filter(|it| it.is_finite());
-            return sizes.fold(range.length(), |most, it| most.max(OF_BOUND * it.abs()));
+            let least = range.length().max(self.by_controls(limit));
+            return sizes.fold(least, |most, it| most.max(OF_BOUND * it.abs()));
         }
         range.length()
+    }
+
+    /// How far controls move a limit: where it is at its bound in all phases, though they differ.
+    fn by_controls(&self, limit: usize) -> f64 {
+        let phases = &self.located.outcome.phases;
+        let extent = |control: usize| {
+            let mut extent = Extent::default();
+            let values = phases.iter().flat_map(|it| &it.trajectory.controls[control]);
+            values.for_each(|it| extent.add(*it));
+            extent.length()
+        };
+        let (problem, row) = (&self.located.chain.phases[0], self.row(0, limit));
+        let by = |control: usize| {
+            let slopes = slopes(problem, &phases[0].trajectory, row, control);
+            slopes.iter().fold(0.0, |most: f64, it| most.max(it.abs())) * extent(control)
+        };
+        (0..self.model.controls.len()).map(by).sum()
     }
 }
 
@@ -361,25 +378,4 @@ pub(super) fn rows_of_switch(switch: &Switch, mode: Mode) -> usize {
         (Mode::Held, false) | (_, false) => count,
         (_, true) => 0,
     }
-}
-
-/// A path condition at the beginning of each interval.
-pub(super) fn path_values(problem: &Problem, trajectory: &Trajectory, row: usize) -> Vec<f64> {
-    let points = points(problem, trajectory);
-    let mut values = Columns::new(problem.path.outputs(), points.count());
-    problem.path.value(&points, &trajectory.parameters, &mut values);
-    values.column(row).to_vec()
-}
-
-/// The inputs of path conditions at the beginning of each interval.
-pub(super) fn points(problem: &Problem, trajectory: &Trajectory) -> Columns {
-    let count = trajectory.time.len() - 1;
-    let mut points = Columns::new(problem.path.layout().point_inputs(), count);
-    for k in 0..count {
-        points.column_mut(0)[k] = k as f64 / count as f64;
-    }
-    for (at, column) in trajectory.states.iter().chain(&trajectory.controls).enumerate() {
-        points.column_mut(1 + at).copy_from_slice(&column[..count]);
-    }
-    points
 }

@@ -3,7 +3,7 @@
 
 use super::start::Signals;
 use super::structure::Structure;
-use super::tuning::certificate::{NEARLY_STATIONARY, STATIONARY};
+use super::tuning::certificate::{NEARLY_STATIONARY, ROUNDING, STATIONARY, WORTH_NOTHING};
 use super::tuning::search::{
     BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GRADES, INTERVALS, MOST_ITERATIONS, MOST_KNOTS,
     MOST_SOLVES, NEAR_END, TOLERANCE,
@@ -214,10 +214,14 @@ fn start(planned: &[Planned], chain: &Chain) -> Start {
 /// digits; what they are worth the certificate says. What is called solved meets its conditions for
 /// the size of their terms.
 pub(super) fn is_stationary(found: &NlpSolution) -> bool {
+    let error = found.kkt_error;
     match found.status {
-        Status::Solved => found.kkt_error <= STATIONARY,
+        Status::Solved => error <= STATIONARY,
         Status::Acceptable | Status::IterationLimit | Status::NumericalFailure => {
-            found.kkt_error.max(found.constraint_violation) <= STATIONARY
+            // Large multipliers excuse an error that would be worth something without them; what is
+            // left of theirs in the end is rounding.
+            let is_told = found.improvement <= WORTH_NOTHING || error <= ROUNDING;
+            is_told && error.max(found.constraint_violation) <= STATIONARY
         }
         _ => false,
     }

@@ -23,6 +23,7 @@ mod minimum;
 mod on_surfaces;
 mod orders;
 mod parts;
+mod path_values;
 mod point;
 mod polish;
 mod polynomials;

@@ -3,7 +3,8 @@
 //! There the true system is not the one that the side says: what happens is decided by rounding,
 //! or what is best is approached from that side and never reached.
 
-use super::contacts::{Contacts, Run, path_values, points};
+use super::contacts::{Contacts, Run};
+use super::path_values::{path_values, points};
 use super::tuning::on_surfaces::{FEWEST, NOTHING, ON, PRESSED};
 use fdcc_compiler::{Mode, is_kink, may_hold};
 use fdcc_runtime::problem::Columns;

@@ -1,14 +1,15 @@
 //! What a solved structure says of itself: what to leave out, what to release.
 
 use super::Located;
-use super::contacts::{Contacts, points, rows_of_switch};
+use super::contacts::{Contacts, rows_of_switch};
+use super::path_values::slopes;
 use super::range::ranges;
 use super::structure::Structure;
 use super::tuning::certificate::{CONTACT, WRONG_SIGN};
 use super::tuning::repair::NOTHING;
 use fdcc_compiler::{Arc, Mode, Model, is_kink};
-use fdcc_runtime::problem::{Columns, Problem};
-use fdcc_runtime::solution::{ControlSlopes, Trajectory, control_slopes};
+use fdcc_runtime::problem::Problem;
+use fdcc_runtime::solution::{ControlSlopes, control_slopes};
 
 /// The structure without the phase that is least there; with a control released; else nothing.
 pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Option<Structure> {
@@ -107,20 +108,4 @@ pub(crate) fn is_attracted(model: &Model, located: &Located, j: usize) -> bool {
         row += rows_of_switch(switch, *mode);
     }
     true
-}
-
-/// The derivative of a path condition by a control, at the beginning of each interval.
-fn slopes(problem: &Problem, trajectory: &Trajectory, row: usize, control: usize) -> Vec<f64> {
-    let (path, count) = (&*problem.path, trajectory.time.len() - 1);
-    let layout = *path.layout();
-    let points = points(problem, trajectory);
-    let pattern = path.jacobian_pattern();
-    let mut values = Columns::new(path.outputs(), count);
-    let mut jacobian = Columns::new(pattern.entries.len(), count);
-    path.jacobian(&points, &trajectory.parameters, &mut values, &mut jacobian);
-    let place = (row as u32, (layout.controls().start + control) as u32);
-    match pattern.entries.iter().position(|it| *it == place) {
-        Some(entry) => jacobian.column(entry).to_vec(),
-        None => vec![0.0; count],
-    }
 }

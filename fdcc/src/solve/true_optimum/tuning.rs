@@ -192,6 +192,10 @@ pub(super) mod minimum {
 pub(crate) mod certificate {
     /// An answer whose optimality error is larger is none.
     pub(crate) const STATIONARY: f64 = 1e-7;
+    /// Where the solver came to no end: what the multipliers say can still be gained, for the size
+    /// of the objective, or else the optimality error.
+    pub(crate) const WORTH_NOTHING: f64 = 1e-6;
+    pub(crate) const ROUNDING: f64 = 1e-9;
     /// What a trial has gained is known where its optimality error is not larger.
     pub(crate) const NEARLY_STATIONARY: f64 = 1e-5;
     /// A hold is tried where the objective falls with its duration by more than this, for the size

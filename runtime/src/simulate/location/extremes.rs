@@ -4,11 +4,11 @@
 
 use crate::simulate::field::Field;
 use crate::simulate::field::tube::Tube;
-use crate::simulate::interval::scaled;
+use crate::simulate::interval::{scaled, size, times};
 use crate::simulate::result::Extreme;
 use crate::simulate::steps::Step;
 use crate::simulate::system::Enclosure;
-use crate::simulate::tuning::extremes::{EXACT, MOST_PARTS};
+use crate::simulate::tuning::extremes::{EXACT, EXACT_OF_TERMS, MOST_PARTS};
 
 /// The least, then the greatest value of each path condition so far; none if nobody asks.
 pub(crate) struct Extremes(pub Vec<[Extreme; 2]>);
@@ -27,10 +27,11 @@ impl Extremes {
     pub fn follow(&mut self, field: &Field, step: &Step, until: f64) {
         for (of, known) in field.system.enclosures.path.iter().zip(&mut self.0) {
             let tube = Tube::new(field);
-            let mut search = Search { field, step, of, tube };
+            let mut search = Search { field, step, of, tube, rounding: 0.0 };
             if search.is_known(known, until) {
                 continue;
             }
+            search.rounding = search.terms() * EXACT_OF_TERMS;
             known
                 .iter_mut()
                 .zip([-1.0, 1.0])
@@ -45,6 +46,8 @@ struct Search<'s, 'a> {
     step: &'s Step,
     of: &'s Enclosure,
     tube: Tube,
+    /// Values that differ by less are the same, to the rounding of the terms that cancel.
+    rounding: f64,
 }
 
 impl Search<'_, '_> {
@@ -52,6 +55,19 @@ impl Search<'_, '_> {
     fn is_known(&mut self, [least, greatest]: &[Extreme; 2], until: f64) -> bool {
         let [low, high] = self.tube.bounds(self.field, self.step, [0.0, until], self.of)[0];
         low > high || low >= least.value && high <= greatest.value
+    }
+
+    /// The size of the terms at the start of the step: inputs times derivatives.
+    fn terms(&mut self) -> f64 {
+        self.value(0.0);
+        let slopes = self.tube.ranges[1..].iter().zip(&self.of.by);
+        let terms = slopes.map(|(slope, &input)| size(times(*slope, self.tube.inputs[input])));
+        Some(terms.sum()).filter(|it: &f64| it.is_finite()).unwrap_or(0.0)
+    }
+
+    /// What is not above this is not beyond the known value.
+    fn enough(&self, known: &Extreme, side: f64) -> f64 {
+        side * known.value + self.rounding.max(EXACT * known.value.abs())
     }
 
     /// The value at a part of the step; not a number where there is none.
@@ -68,7 +84,7 @@ impl Search<'_, '_> {
             let farthest = parts.iter().enumerate().max_by(|a, b| a.1.most.total_cmp(&b.1.most));
             let Some(at) = farthest.map(|it| it.0) else { return };
             let part = parts.swap_remove(at);
-            if part.most <= enough(known, side) {
+            if part.most <= self.enough(known, side) {
                 return;
             }
             if !self.is_done(known, side, &part) {
@@ -96,7 +112,7 @@ impl Search<'_, '_> {
         let until_highest = (values[2] - values[0] - falls * (to - from)) / (grows - falls);
         falls >= 0.0
             || grows <= 0.0
-            || values[0] + grows * until_highest <= enough(known, side)
+            || values[0] + grows * until_highest <= self.enough(known, side)
             || to - from <= f64::EPSILON
     }
 
@@ -118,9 +134,4 @@ struct Part {
     most: f64,
     falls: f64,
     grows: f64,
-}
-
-/// What is not above this is not beyond the known value.
-fn enough(known: &Extreme, side: f64) -> f64 {
-    side * known.value + EXACT * known.value.abs()
 }

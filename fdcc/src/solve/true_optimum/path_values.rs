@@ -1,0 +1,46 @@
+//! Path conditions of a phase and their derivatives, at the beginning of each interval.
+
+use fdcc_runtime::problem::{Columns, Problem};
+use fdcc_runtime::solution::Trajectory;
+
+/// A path condition at the beginning of each interval.
+pub(super) fn path_values(problem: &Problem, trajectory: &Trajectory, row: usize) -> Vec<f64> {
+    let points = points(problem, trajectory);
+    let mut values = Columns::new(problem.path.outputs(), points.count());
+    problem.path.value(&points, &trajectory.parameters, &mut values);
+    values.column(row).to_vec()
+}
+
+/// The inputs of path conditions at the beginning of each interval.
+pub(super) fn points(problem: &Problem, trajectory: &Trajectory) -> Columns {
+    let count = trajectory.time.len() - 1;
+    let mut points = Columns::new(problem.path.layout().point_inputs(), count);
+    for k in 0..count {
+        points.column_mut(0)[k] = k as f64 / count as f64;
+    }
+    for (at, column) in trajectory.states.iter().chain(&trajectory.controls).enumerate() {
+        points.column_mut(1 + at).copy_from_slice(&column[..count]);
+    }
+    points
+}
+
+/// The derivative of a path condition by a control, at the beginning of each interval.
+pub(super) fn slopes(
+    problem: &Problem,
+    trajectory: &Trajectory,
+    row: usize,
+    control: usize,
+) -> Vec<f64> {
+    let (path, count) = (&*problem.path, trajectory.time.len() - 1);
+    let layout = *path.layout();
+    let points = points(problem, trajectory);
+    let pattern = path.jacobian_pattern();
+    let mut values = Columns::new(path.outputs(), count);
+    let mut jacobian = Columns::new(pattern.entries.len(), count);
+    path.jacobian(&points, &trajectory.parameters, &mut values, &mut jacobian);
+    let place = (row as u32, (layout.controls().start + control) as u32);
+    match pattern.entries.iter().position(|it| *it == place) {
+        Some(entry) => jacobian.column(entry).to_vec(),
+        None => vec![0.0; count],
+    }
+}

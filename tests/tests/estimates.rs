@@ -265,6 +265,31 @@ fn a_fit_of_several_phases_may_stand_outside() {
     assert!(is_near(error(&fit, "p") * deviation, error(&sums, "p")));
 }
 
+/// One experiment goes on through two phases whose border is unknown: each row is one of the phase
+/// in which it is, wherever that is at the start. The rows lie on two lines exactly.
+#[test]
+fn rows_of_one_experiment_belong_to_the_phase_that_has_their_time() {
+    let value = |t: f64| if t < 1.7 { 2.0 * t } else { 3.4 - (t - 1.7) };
+    let rows = (0..=16).map(|row| 0.25 * f64::from(row));
+    let rows: String = rows.map(|t| format!("{t},{}\n", value(t))).collect();
+    for (border, unknowns) in [("free T in [0.3, 3.7] guess 2.6", 3), ("const T = 1.7", 2)] {
+        for goal in ["fit obs: x sd 0.1", "minimize sum(k in obs, (x(k.t) - k.x)^2)"] {
+            let text = format!(
+                "data obs = csv(\"a.csv\") columns t, x\n{border}\n
+                free a in [-9, 9] guess 1\nfree b in [-9, 9] guess 0\nstate x start 0
+                phase up {{ time t in [0, T]  dynamics {{ x' = a }} }}
+                phase down {{ time t in [T, 4]  dynamics {{ x' = b }} }}
+                link up -> down {{}}\n{goal}"
+            );
+            let found = estimates(&text, &format!("t,x\n{rows}"));
+            for (name, value) in [("a", 2.0), ("b", -1.0), ("T", 1.7)].iter().take(unknowns) {
+                assert!(is_near(estimate(&found, name).value, *value), "{found:#?}");
+            }
+            assert_eq!((found.rows, found.unknowns.len()), (17, unknowns), "{text}");
+        }
+    }
+}
+
 /// What is expected of sums over rows of several phases.
 #[test]
 fn expectations_read_sums_of_phases() {

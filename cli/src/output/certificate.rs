@@ -106,7 +106,8 @@ impl Certificate {
 
     /// Why it is not certified, in a line; nothing if it is.
     pub fn failure(&self) -> Option<String> {
-        let failed: Vec<String> = self.checks.iter().filter(|it| !it.passes).map(words).collect();
+        let failed = self.checks.iter().filter(|it| !it.passes);
+        let failed = all_missed(failed.map(|it| (it.check, [it.figure, it.limit])));
         let what = failed.join(", ");
         let system = self.system();
         (!failed.is_empty()).then(|| format!(" true  no certified optimum of the {system}: {what}"))
@@ -135,10 +136,6 @@ impl Certificate {
     }
 }
 
-fn words(it: &Check) -> String {
-    missed(it.check, [it.figure, it.limit])
-}
-
 /// How many switches and jumps were located: `2 switches and 1 jump located`.
 pub fn located(switches: usize, jumps: usize) -> String {
     let all = [
@@ -154,8 +151,15 @@ pub fn located(switches: usize, jumps: usize) -> String {
     }
 }
 
+/// What checks that fail say, each sentence once.
+pub fn all_missed<'c>(failed: impl Iterator<Item = (&'c str, [f64; 2])>) -> Vec<String> {
+    let mut all: Vec<String> = failed.map(|(check, figures)| missed(check, figures)).collect();
+    all.dedup();
+    all
+}
+
 /// What a check that fails says: its figure is above its limit.
-pub fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
+fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
     let is_unknown = !figure.is_finite();
     let (figure, limit) = (scientific(figure, 1), scientific(limit, 0));
     match check {
@@ -175,7 +179,9 @@ pub fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
              a surface on one side of it"
                 .into()
         }
-        "replayed" if is_unknown => "the replay does not reach the end".into(),
+        "replayed" | "objective" | "conditions" | "modes" if is_unknown => {
+            "the replay does not reach the end".into()
+        }
         "contacts" => format!(
             "the multiplier of a limit at its bound has the wrong sign by {figure} (limit {limit})"
         ),

@@ -3,7 +3,7 @@
 use super::json::{Json, NULL};
 use super::runs;
 use super::units::{of_condition, of_time, of_value};
-use crate::output::certificate::{located, missed, system};
+use crate::output::certificate::{all_missed, located, system};
 use crate::output::number::{scientific, significant};
 use fdcc::names;
 
@@ -232,7 +232,7 @@ fn certified(document: &Json) -> Option<Claim> {
         return Some(claim(Mark::Certain, text));
     }
     let failed = checks.iter().filter(|it| !it.at("passes").is_true());
-    let why: Vec<String> = failed.map(|it| missed(it.at("check").text(), figures(it))).collect();
+    let why = all_missed(failed.map(|it| (it.at("check").text(), figures(it))));
     let of = if smoothed(document) { "smoothed" } else { "discretised" };
     let text = format!(
         "This is the optimum of the {of} problem. An optimum of the {} was looked for and is not \

@@ -117,9 +117,11 @@ fn back_in_time(sum: &Sum, table: &Table, times: &[f64]) -> Option<Diagnostic> {
 
 fn beyond(sum: &Sum, table: &Table, times: &[f64], [first, last]: [f64; 2]) -> Option<Diagnostic> {
     let room = ROUNDING * (last - first).abs();
-    let is_outside = |time: &f64| !(first - room..=last + room).contains(time);
-    let row = times.iter().position(is_outside)?;
-    let count = times.iter().filter(|time| is_outside(time)).count();
+    let [before, behind] = sum.is_shared;
+    let is_within = |time: f64| (before || time >= first - room) && (behind || time <= last + room);
+    let is_outside = |time: &&f64| !is_within(**time);
+    let row = times.iter().position(|time| !is_within(*time))?;
+    let count = times.iter().filter(is_outside).count();
     let message = format!("{} is beyond the time of the model", table.row_in_words(row));
     let [first, last] = [first, last].map(shown);
     let label = match count {

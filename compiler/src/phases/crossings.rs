@@ -97,7 +97,7 @@ fn at_start(
 }
 
 /// Above 0 on the side from which the jump happens.
-fn height(direction: Direction, psi: Interval) -> Interval {
+pub(super) fn height(direction: Direction, psi: Interval) -> Interval {
     match direction {
         Direction::Falling => psi,
         Direction::Rising => Interval::new(-psi.upper, -psi.lower),

@@ -1,9 +1,11 @@
 //! Which jumps may happen, and in which order.
 
-use super::crossings::{Beginning, beginnings};
-use super::hold::rest;
+use super::crossings::{Beginning, beginnings, height};
+use super::hold::{approach, rest};
+use crate::expressions::graph::Graph;
+use crate::expressions::interval::{Interval, Tape};
 use crate::model::numbers::{Numbers, numbers};
-use crate::model::{Jump, Model};
+use crate::model::{Jump, Model, Symbol};
 use fdcc_grammar::Diagnostic;
 
 /// A jump is tried so often where the model does not say how often it may happen, or says a number
@@ -77,6 +79,8 @@ pub(super) fn limits(model: &Model, numbers: &Numbers) -> Vec<Option<usize>> {
 /// How often each jump is tried, and whether that leaves anything out.
 fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
     let mut graph = model.graph.clone();
+    let known = model.jumps.iter().map(|jump| crossed(model, numbers, &mut graph, jump));
+    let known: Vec<Option<usize>> = known.collect();
     let mut tried = |(limit, jump): (Option<usize>, &Jump)| match limit {
         Some(limit) if jump.then_hold.is_some() && rest(model, &mut graph, jump).is_none() => {
             limit.saturating_sub(1).min(TRIED)
@@ -85,8 +89,50 @@ fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
         Some(limit) => limit,
         None => TRIED,
     };
-    let limits = limits(model, numbers);
+    let least = |(limit, known): (Option<usize>, Option<usize>)| match (limit, known) {
+        (Some(limit), Some(known)) => Some(limit.min(known)),
+        (limit, known) => limit.or(known),
+    };
+    let limits: Vec<Option<usize>> =
+        limits(model, numbers).into_iter().zip(known).map(least).collect();
     let most: Vec<usize> = limits.iter().copied().zip(&model.jumps).map(&mut tried).collect();
     let is_cut = limits.iter().zip(&most).any(|(limit, most)| *limit != Some(*most));
     (most, is_cut)
+}
+
+/// How often the state can come to the surface of a jump from the side on which it happens, where
+/// that is plain: the function of the surface, such as `t - 8`, rises or falls at all times, and no
+/// jump resets what it depends on.
+fn crossed(model: &Model, numbers: &Numbers, graph: &mut Graph, jump: &Jump) -> Option<usize> {
+    let psi = model.surfaces[jump.surface].psi;
+    let is_reset = |at: usize| model.jumps.iter().flat_map(|it| &it.resets).any(|it| it.0 == at);
+    let read = graph.inputs_of(&[psi]).into_iter().map(|at| model.symbols[at as usize]);
+    if read.into_iter().any(|it| matches!(it, Symbol::State(at) if is_reset(at))) {
+        return None;
+    }
+    let approach = approach(model, graph, psi);
+    let rate = Tape::new(graph, &[approach]).evaluate(&anywhere(model, numbers))[0];
+    let rate = height(jump.direction, rate);
+    match () {
+        () if rate.is_negative() => Some(1),
+        () if rate.is_positive() => Some(0),
+        () => None,
+    }
+}
+
+/// What each input of the graph may be at any time.
+fn anywhere(model: &Model, numbers: &Numbers) -> Vec<Interval> {
+    let bounds = |range| {
+        let bounds = numbers.bounds(model, range);
+        Interval::new(bounds.lower, bounds.upper)
+    };
+    let one = |symbol: &Symbol| match *symbol {
+        Symbol::Param(_) => Interval::point(numbers.of(*symbol)),
+        Symbol::Free(at) => bounds(model.frees[at].range),
+        Symbol::State(at) => bounds(model.states[at].range),
+        Symbol::Control(at) => bounds(model.controls[at].range),
+        Symbol::Selector(_) => Interval::new(-1.0, 1.0),
+        _ => Interval::ALL,
+    };
+    model.symbols.iter().map(one).collect()
 }

@@ -13,7 +13,7 @@ mod piecewise;
 mod vectors;
 
 use super::elaborator::Elaborator;
-use super::elaborator::value::{Parts, Traits, Value};
+use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::syntax::DEEPEST;
 use crate::syntax::{scope, walk};
 use crate::units;
@@ -135,12 +135,23 @@ impl<'a> Elaborator<'a> {
 
     fn unknown_name(&mut self, name: &str, span: Span) -> Value {
         let owners = self.phases.iter().filter(|phase| phase.names.contains_key(name));
-        let owners: Vec<String> =
-            owners.map(|phase| format!("`{}.{name}`", phase.name.name)).collect();
+        let owners: Vec<&str> = owners.map(|phase| phase.name.name.as_str()).collect();
         if !owners.is_empty() {
             let message = format!("nothing called `{name}` here");
             let found = Diagnostic::new(Code::UnknownName, message, span, "declared in phases");
-            return self.fail(found.help(format!("write {}", owners.join(" or "))));
+            let all = |shown: &dyn Fn(&&str) -> String, between: &str| {
+                owners.iter().map(shown).collect::<Vec<_>>().join(between)
+            };
+            // What reads no phase stands in each of them.
+            let help = match Reads::PHASE.beyond(self.here.context.allowed).is_empty() {
+                true => format!("write {}", all(&|it| format!("`{it}.{name}`"), " or ")),
+                false => format!(
+                    "each phase has its own `{name}`: write {} for each, within {}",
+                    self.here.context.name,
+                    all(&|it| format!("`phase {it}`"), " and ")
+                ),
+            };
+            return self.fail(found.help(help));
         }
         let locals: Vec<&str> =
             self.here.visible().iter().map(|local| local.0).chain(["pi"]).collect();

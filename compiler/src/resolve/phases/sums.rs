@@ -1,4 +1,5 @@
-//! Sums over rows of measured data: each belongs to what it reads, the model or one of its phases.
+//! Sums over rows of measured data: each belongs to what it reads, the model or one of its phases;
+//! one of states that stand outside of all phases has a part in each.
 
 use crate::expressions::graph::{ById, ExprId};
 use crate::model::{Sum, Symbol};
@@ -17,15 +18,21 @@ impl Elaborator<'_> {
         phases.sort_unstable();
         phases.dedup();
         match phases[..] {
-            [] => {
+            [] if self.phases.is_empty() => {
                 let at = self.sum_like(sum);
                 Some(self.known_symbol(Symbol::Sum(at)))
             }
-            [phase] => {
-                let at = self.sum_of_phase(phase, sum);
-                let own = self.phases[phase].meaning.known_symbol(Symbol::Sum(at));
-                self.import(phase, &[own]).pop()
+            // What goes on through all phases: each has the rows of its time.
+            [] => {
+                let last = self.phases.len() - 1;
+                let share = |phase| Sum { is_shared: [phase > 0, phase < last], ..sum.clone() };
+                let shares: Vec<Sum> = (0..=last).map(share).collect();
+                let terms = shares.into_iter().enumerate();
+                let terms: Option<Vec<ExprId>> =
+                    terms.map(|(phase, share)| self.sum_in(phase, share)).collect();
+                Some(self.graph.sum(&terms?))
             }
+            [phase] => self.sum_in(phase, sum),
             _ => {
                 let message = "a row at the times of two phases";
                 let label = "each phase has its own time";
@@ -34,6 +41,13 @@ impl Elaborator<'_> {
                 None
             }
         }
+    }
+
+    /// The value of a sum of a phase.
+    fn sum_in(&mut self, phase: usize, sum: Sum) -> Option<ExprId> {
+        let at = self.sum_of_phase(phase, sum);
+        let own = self.phases[phase].meaning.known_symbol(Symbol::Sum(at));
+        self.import(phase, &[own]).pop()
     }
 
     /// A sum of the model, a new one if there is none like it.

@@ -164,3 +164,69 @@ method { N = 20 sigma = 0.1 }
     let limits = |phase: &str| document["phases"][phase]["path"].as_object().map(|it| it.len());
     assert_eq!((limits("a"), limits("b")), (Some(1), None));
 }
+
+fn near(value: &Value, expected: f64) {
+    let off = value.as_f64().map(|it| (it - expected).abs());
+    assert!(off.is_some_and(|it| it < 1e-9), "{value}, not {expected}");
+}
+
+/// A fall of 1 s, half of the speed, and a slide that ends after `9.81/2/5` s.
+#[test]
+fn phases_are_simulated_one_after_the_other() {
+    let text = "model drop
+phase fall { time t in [0, 1]  state h start 5  state v start 0
+  dynamics { h' = v  v' = -9.81 }  minimize h(end) }
+phase slide { time t in [1, 4]  state h  state v  surface slip = v
+  dynamics { h' = v  v' in -5*Sgn(slip) }  minimize h(end) }
+link fall -> slide { same v := 0.5*v }";
+    let folder = folder("phases_simulated", &[("drop.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["simulate", "drop.fdc", "--json", "--out", "out"], "");
+    let document = json(&output);
+    let landed = 5.0 - 0.5 * 9.81;
+    let rest = landed - 4.905 * 4.905 / 10.0;
+    near(&document["phases"]["fall"]["end"]["h"], landed);
+    near(&document["phases"]["slide"]["events"][0]["time"], 1.981);
+    near(&document["phases"]["slide"]["end"]["h"], rest);
+    near(&document["objective"], landed + rest);
+    assert_eq!(document["status"], "completed");
+    for name in ["sim.json", "sim.html", "fall.sim.csv", "slide.sim.csv"] {
+        assert!(folder.join(format!("out/drop.{name}")).exists(), "{name}");
+    }
+}
+
+/// A solution drives each phase by its own controls; the links hold between them.
+#[test]
+fn a_solution_with_phases_is_simulated() {
+    let folder = folder("phases_driven", &[("hop.fdc", HOP)]);
+    let solved = solved(&folder, &["--out", "."]);
+    let driven = ["simulate", "hop.fdc", "--control", "hop.sol.json", "--json"];
+    let found = json(&fdcc(&folder, &driven, ""));
+    for (phase, name) in [("up", "h"), ("up", "v"), ("down", "h"), ("down", "v")] {
+        let end = found["phases"][phase]["end"][name].as_f64().expect("a number");
+        let plan = at(&solved, phase, "states", name, true);
+        assert!((end - plan).abs() < 1e-2, "{phase}.{name}: {end} and {plan}");
+    }
+    for (arguments, said) in [
+        (["--times", "0,1"], "phases have times of their own"),
+        (["--control", "hop.csv"], "takes the .sol.json"),
+        (["--warm", "hop.sol.json"], "needs a model of one piece"),
+    ] {
+        let output = fdcc(&folder, &[&["simulate", "hop.fdc"][..], &arguments].concat(), "");
+        expect_exit(&output, 3, said);
+        assert!(stderr(&output).contains(said), "{}", stderr(&output));
+    }
+}
+
+/// What stops in a phase is told, and no later phase is made up.
+#[test]
+fn a_phase_that_does_not_end_is_the_last() {
+    let text = "phase one { time t in [0, 2]  state x start 1  dynamics { x' = -1/sqrt(x) } }
+phase two { time t in [2, 3]  state x  dynamics { x' = 1 } }
+link one -> two { same }";
+    let folder = folder("phases_early", &[("early.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["simulate", "early.fdc", "--json"], "");
+    expect_exit(&output, 2, "it is not defined at 0");
+    let document = json(&output);
+    assert_eq!(document["status"], "not_finite");
+    assert_eq!(document["phases"].as_object().map(serde_json::Map::len), Some(1));
+}

@@ -42,7 +42,7 @@ pub use kinks::{Kinks, is_kink, side_of, without_kinks};
 pub use lower::{Expected, LoweredProblem};
 pub use model::{Along, Model, Phase, Switch};
 pub use phases::{
-    Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Sequences, Slopes,
+    Arc, Course, Ends, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Sequences, Slopes,
     between_jumps, crossings, ends_at, hamiltonian, is_uncontrolled, limits, may_hold, sequences,
     with_modes, with_modes_in_phases, with_phases, with_times,
 };

@@ -29,6 +29,7 @@ mod plant;
 pub mod record;
 mod replay;
 mod simulation;
+mod simulation_of_phases;
 mod solve;
 mod verification;
 mod warm_start;
@@ -46,6 +47,7 @@ pub use plant::Plant;
 pub use record::Record;
 pub use replay::Replay;
 pub use simulation::Simulation;
+pub use simulation_of_phases::SimulationOfPhases;
 pub use solve::true_optimum;
 pub use solve::{
     Case, Cases, Compiled, Controller, CostatesBefore, Ended, Family, Grid, Jump, Options, Part,

@@ -7,6 +7,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output;
 use crate::output::control::{self, Driver};
+use crate::output::saved::Saved;
 use crate::report::log::Level;
 use crate::watch::{Deadline, catch_interrupts};
 use clap::Args;
@@ -109,6 +110,22 @@ impl Driven {
             Ok::<(), Failure>(())
         })?;
         Ok((self.changes.apply(&adapted).map_err(Failure::Usage)?, driver))
+    }
+
+    /// The changed model, and the solution that drives its phases.
+    pub fn in_phases(&self, model: &Model) -> Result<(Model, Option<Saved>), Failure> {
+        if self.warm.is_some() {
+            let what = "`--warm` needs a model of one piece; `--control` takes a .sol.json, too";
+            return Err(Failure::Usage(what.into()));
+        }
+        let is_json = |path: &PathBuf| path.extension().is_some_and(|it| it == "json");
+        if self.control.as_ref().is_some_and(|path| !is_json(path)) {
+            let what = "each phase has controls of its own: `--control` takes the .sol.json of a \
+                        solve";
+            return Err(Failure::Usage(what.into()));
+        }
+        let saved = self.control.as_deref().map(Saved::read).transpose()?;
+        Ok((self.changes.apply(model).map_err(Failure::Usage)?, saved))
     }
 
     /// The controls for a system. What is odd about them is said on the standard error.

@@ -5,7 +5,9 @@ use super::options::usage;
 use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
+use crate::output::saved::Saved;
 use crate::output::simulation::SimulationDocument;
+use crate::output::simulation_of_phases::PhasesDocument;
 use crate::output::{self, files};
 use crate::page;
 use clap::Args;
@@ -38,10 +40,26 @@ impl Simulate {
             Ok(model) => model,
             Err(exit) => return exit,
         };
-        match self.simulate(&model) {
-            Ok((document, exit)) => self.report(&document, exit, &model),
+        let done = match model.phases().is_empty() {
+            true => self.simulate(&model).map(|(document, exit)| (Text::of(&document), exit)),
+            false => self.simulate_phases(&model),
+        };
+        match done {
+            Ok((text, exit)) => self.report(&text, exit, &model),
             Err(failure) => failure.report(model.source()),
         }
+    }
+
+    fn simulate_phases(&self, model: &Model) -> Result<(Text, Exit), Failure> {
+        if !self.times.is_empty() {
+            let what = "`--times` needs a model of one piece; phases have times of their own";
+            return Err(Failure::Usage(what.into()));
+        }
+        let (model, saved) = self.driven.in_phases(model)?;
+        let record = saved.as_ref().map(Saved::record);
+        let simulated = model.simulate_phases(record.as_ref(), &self.driven.options(&model))?;
+        let exit = if simulated.is_complete() { Exit::Fine } else { Exit::NotSolved };
+        Ok((Text::of_phases(&PhasesDocument::new(&simulated, &model)), exit))
     }
 
     fn simulate(&self, model: &Model) -> Result<(SimulationDocument, Exit), Failure> {
@@ -64,21 +82,48 @@ impl Simulate {
         Ok((SimulationDocument::new(&simulation, &model), exit))
     }
 
-    fn report(&self, document: &SimulationDocument, exit: Exit, model: &Model) -> Exit {
+    fn report(&self, text: &Text, exit: Exit, model: &Model) -> Exit {
         let written = match &self.out {
             Some(folder) => {
-                let json = output::json(document);
-                let page = page::of(&json);
-                let all = [("sim.json", json), ("sim.csv", document.csv()), ("sim.html", page)];
-                files::write_all(folder, &document.model, &all)
+                let page = ("sim.html".to_owned(), page::of(&text.json));
+                let json = ("sim.json".to_owned(), text.json.clone());
+                let all: Vec<_> =
+                    [json].into_iter().chain(text.csv.clone()).chain([page]).collect();
+                let all: Vec<_> = all.iter().map(|it| (it.0.as_str(), it.1.clone())).collect();
+                files::write_all(folder, &text.model, &all)
             }
             None => Ok(Vec::new()),
         };
-        if self.json {
-            output::print(&output::json(document));
-        } else {
-            output::print(&document.words());
-        }
+        output::print(if self.json { &text.json } else { &text.words });
         wrote(written, self.json, exit, model.source())
+    }
+}
+
+/// A simulation in all its forms.
+struct Text {
+    model: String,
+    json: String,
+    /// Endings of the names of files, with what is in them.
+    csv: Vec<(String, String)>,
+    words: String,
+}
+
+impl Text {
+    fn of(document: &SimulationDocument) -> Self {
+        Text {
+            model: document.model.clone(),
+            json: output::json(document),
+            csv: vec![("sim.csv".into(), document.csv())],
+            words: document.words(),
+        }
+    }
+
+    fn of_phases(document: &PhasesDocument) -> Self {
+        Text {
+            model: document.model.clone(),
+            json: output::json(document),
+            csv: document.csv().collect(),
+            words: document.words(),
+        }
     }
 }

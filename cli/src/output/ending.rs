@@ -10,7 +10,7 @@ use fdcc_runtime::simulate::{Candidate, Event, EventKind, Simulation, Status, Sy
 use serde::Serialize;
 
 /// The status, and one object that explains it unless it is `completed`.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct Ending {
     status: &'static str,
     #[serde(flatten)]
@@ -18,7 +18,7 @@ pub struct Ending {
 }
 
 /// Why a simulation ended early; the name of the variant is that of the object.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Why {
     NotUnique {
@@ -177,7 +177,7 @@ fn candidate(system: &System, candidate: &Candidate) -> String {
 }
 
 /// An event.
-#[derive(Serialize)]
+#[derive(Clone, Serialize)]
 pub struct EventEntry {
     pub time: f64,
     pub surface: String,

@@ -25,6 +25,7 @@ pub mod rows;
 pub mod sarif;
 pub mod saved;
 pub mod simulation;
+pub mod simulation_of_phases;
 pub mod table;
 pub mod tested;
 pub mod tried;

@@ -5,6 +5,7 @@ use super::named::Named;
 use super::units::{Shown, Units};
 use crate::version::VERSION;
 use fdcc::{Model, Simulation};
+use fdcc_grammar::SourceFile;
 use serde::Serialize;
 use std::fmt::Write;
 
@@ -14,15 +15,7 @@ pub struct SimulationDocument {
     fdcc: String,
     pub model: String,
     #[serde(flatten)]
-    ending: Ending,
-    time: Vec<f64>,
-    states: Named<Vec<f64>>,
-    events: Vec<EventEntry>,
-    /// `time`, then the states.
-    end: Named<f64>,
-    integrals: Named<f64>,
-    objective: Option<f64>,
-    counts: Counts,
+    run: RunEntry,
     #[serde(skip_serializing_if = "Units::is_empty")]
     units: Units,
     #[serde(skip_serializing_if = "Named::is_empty")]
@@ -30,16 +23,67 @@ pub struct SimulationDocument {
     source: String,
 }
 
-#[derive(Serialize)]
-struct Counts {
-    steps: usize,
+/// What a system did, of one piece or in a phase.
+#[derive(Clone, Serialize)]
+pub struct RunEntry {
+    #[serde(flatten)]
+    pub ending: Ending,
+    time: Vec<f64>,
+    states: Named<Vec<f64>>,
+    pub events: Vec<EventEntry>,
+    /// `time`, then the states.
+    end: Named<f64>,
+    integrals: Named<f64>,
+    objective: Option<f64>,
+    pub counts: Counts,
+}
+
+/// The work that was done.
+#[derive(Clone, Copy, Default, Serialize)]
+pub struct Counts {
+    pub steps: usize,
     rejected: usize,
     stiff: usize,
     evaluations: usize,
 }
 
+impl Counts {
+    /// That of both.
+    pub fn and(self, other: Counts) -> Counts {
+        Counts {
+            steps: self.steps + other.steps,
+            rejected: self.rejected + other.rejected,
+            stiff: self.stiff + other.stiff,
+            evaluations: self.evaluations + other.evaluations,
+        }
+    }
+}
+
 impl SimulationDocument {
     pub fn new(simulated: &Simulation, model: &Model) -> Self {
+        SimulationDocument {
+            fdcc: VERSION.to_string(),
+            model: simulated.system.name.clone(),
+            run: RunEntry::new(simulated, model.source()),
+            display_units: Units::from(model).shown(),
+            units: model.into(),
+            source: model.source().text.to_string(),
+        }
+    }
+
+    /// The text of `MODEL.sim.csv`.
+    pub fn csv(&self) -> String {
+        self.run.csv()
+    }
+
+    /// The events, the end, and a verdict.
+    pub fn words(&self) -> String {
+        self.run.words(&self.units)
+    }
+}
+
+impl RunEntry {
+    pub fn new(simulated: &Simulation, source: &SourceFile) -> Self {
         let Simulation { system, result: simulation } = simulated;
         let ends = simulation.end.iter().zip(&system.states);
         let integrals = ends.filter(|(_, state)| state.hidden);
@@ -48,10 +92,8 @@ impl SimulationDocument {
         let mut end = vec![("time".to_string(), simulation.end_time)];
         end.extend(state(system, &simulation.end).0);
         let counts = simulation.counts;
-        SimulationDocument {
-            fdcc: VERSION.to_string(),
-            model: system.name.clone(),
-            ending: Ending::new(system, simulation, model.source()),
+        RunEntry {
+            ending: Ending::new(system, simulation, source),
             time: simulation.time.clone(),
             states: columns.map(|(column, state)| (state.name.clone(), column.clone())).collect(),
             events: events(system, simulation),
@@ -64,13 +106,10 @@ impl SimulationDocument {
                 stiff: counts.stiff,
                 evaluations: counts.evaluations,
             },
-            display_units: Units::from(model).shown(),
-            units: model.into(),
-            source: model.source().text.to_string(),
         }
     }
 
-    /// The text of `MODEL.sim.csv`.
+    /// A column for the time and for each state.
     pub fn csv(&self) -> String {
         let names: Vec<&str> = self.states.0.iter().map(|(name, _)| name.as_str()).collect();
         let mut text = format!("{}\n", [&["t"], names.as_slice()].concat().join(","));
@@ -83,22 +122,22 @@ impl SimulationDocument {
     }
 
     /// The events, the end, and a verdict.
-    pub fn words(&self) -> String {
+    pub fn words(&self, units: &Units) -> String {
         let mut text = String::new();
         for event in &self.events {
-            let time = self.units.value("time", event.time, 12);
+            let time = units.value("time", event.time, 12);
             let (surface, what) = (&event.surface, event.what());
-            let state = self.units.pairs(&event.state, 12);
+            let state = units.pairs(&event.state, 12);
             writeln!(text, " {time:>16}  {surface:<10} {what:<16} {state}")
                 .expect("a string takes everything");
         }
-        let integrals = self.units.pairs(&self.integrals, 12);
-        let value = |value: f64| self.units.value("objective", value, 12);
+        let integrals = units.pairs(&self.integrals, 12);
+        let value = |value: f64| units.value("objective", value, 12);
         let objective = self.objective.map(|it| format!("objective {}  ", value(it)));
         let events = super::plural(self.events.len(), "event");
         let completed = format!("completed: {events}, {} steps", self.counts.steps);
         let last = self.ending.why().unwrap_or(completed);
-        text += &format!(" {last}\n end: {}\n", self.units.pairs(&self.end, 12));
+        text += &format!(" {last}\n end: {}\n", units.pairs(&self.end, 12));
         if !integrals.is_empty() || objective.is_some() {
             text += &format!(" {}{integrals}\n", objective.unwrap_or_default());
         }

@@ -220,8 +220,8 @@ impl Model {
     /// The first construct that is understood but cannot be simulated or differentiated as a whole.
     pub(crate) fn first_not_yet(&self) -> Option<Diagnostic> {
         let phases = self.phases.iter().map(|it| {
-            let message = "a model with phases cannot be simulated as a whole yet";
-            let label = "`solve` replays each phase by itself";
+            let message = "a model with phases is no single system";
+            let label = "`simulate` goes from phase to phase";
             Diagnostic::new(Code::NotYet, message, it.place.span, label)
         });
         self.not_yet.iter().cloned().chain(phases).min_by_key(Diagnostic::span)

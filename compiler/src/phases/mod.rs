@@ -13,6 +13,7 @@
 //! times at its ends only, so that the cost of a solve is that of all phases one after the other.
 
 mod at_times;
+mod course;
 mod crossings;
 mod division;
 mod hold;
@@ -23,6 +24,7 @@ mod sequences;
 mod shares;
 
 pub use at_times::{ends_at, with_times};
+pub use course::{Course, Ends};
 pub use crossings::crossings;
 pub use modes::{
     Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Slopes, hamiltonian,

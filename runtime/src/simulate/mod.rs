@@ -30,7 +30,7 @@ pub use result::{
     Candidate, Counts, Event, EventKind, Extreme, Integrator, Method, Options, Simulation, Status,
     Watch,
 };
-pub use run::simulate;
+pub use run::{controls_at, simulate};
 pub(crate) use steps::{departure, dormand_prince, radau};
 pub use system::{Ball, Enclosure, Enclosures, Interval, Jump, System, value};
 pub use tape::{Cause, Change, Instant, Piece, Regime, Rule, Tape, Touch};

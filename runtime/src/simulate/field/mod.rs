@@ -140,7 +140,7 @@ impl<'a> Field<'a> {
     }
 
     /// Guessed controls change all the time, polynomials in time, too.
-    fn follow_controls(&mut self, t: f64) {
+    pub fn follow_controls(&mut self, t: f64) {
         if let Some(curve) = &self.curve {
             curve.value_into(t, &mut self.control);
         } else if self.follows_guess() {

@@ -50,6 +50,15 @@ pub fn simulate(system: &System, controls: &Controls, options: &Options) -> Simu
     run.finish(status)
 }
 
+/// What controls of a system are at a time.
+pub fn controls_at(system: &System, controls: &Controls, time: f64) -> Vec<f64> {
+    let options = Options::default();
+    let mut field = Field::new(system, controls, &options);
+    field.use_controls_of(time);
+    field.follow_controls(time);
+    field.control().to_vec()
+}
+
 impl<'a> Run<'a> {
     fn new(system: &'a System, controls: &'a Controls, options: &'a Options) -> Self {
         let mut field = Field::new(system, controls, options);

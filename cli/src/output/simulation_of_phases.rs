@@ -1,0 +1,65 @@
+//! The JSON document of a simulation of phases, its tables, and its words for people.
+
+use super::ending::Ending;
+use super::named::Named;
+use super::simulation::{Counts, RunEntry};
+use super::units::{Shown, Units};
+use crate::version::VERSION;
+use fdcc::{Model, SimulationOfPhases};
+use serde::Serialize;
+
+/// One simulation, phase by phase.
+#[derive(Serialize)]
+pub struct PhasesDocument {
+    fdcc: String,
+    pub model: String,
+    /// How the last phase ended that was simulated.
+    #[serde(flatten)]
+    ending: Ending,
+    phases: Named<RunEntry>,
+    objective: Option<f64>,
+    counts: Counts,
+    #[serde(skip_serializing_if = "Units::is_empty")]
+    units: Units,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    display_units: Named<Shown>,
+    source: String,
+    /// Those of each phase.
+    #[serde(skip)]
+    units_of_phases: Vec<Units>,
+}
+
+impl PhasesDocument {
+    pub fn new(simulated: &SimulationOfPhases, model: &Model) -> Self {
+        let runs = simulated.all.iter().map(|it| RunEntry::new(it, model.source()));
+        let runs: Vec<RunEntry> = runs.collect();
+        let names = simulated.models.iter().map(|it| it.name().to_owned());
+        let last = runs.last().expect("a model with phases has one");
+        PhasesDocument {
+            fdcc: VERSION.to_string(),
+            model: model.name().to_owned(),
+            ending: last.ending.clone(),
+            counts: runs.iter().map(|it| it.counts).fold(Counts::default(), Counts::and),
+            objective: simulated.objective,
+            display_units: Units::from(model).shown(),
+            units: model.into(),
+            units_of_phases: simulated.models.iter().map(Units::from).collect(),
+            source: model.source().text.to_string(),
+            phases: names.zip(runs).collect(),
+        }
+    }
+
+    /// The name and the text of `MODEL.PHASE.sim.csv`, for each phase.
+    pub fn csv(&self) -> impl Iterator<Item = (String, String)> {
+        self.phases.0.iter().map(|(name, run)| (format!("{name}.sim.csv"), run.csv()))
+    }
+
+    /// Phase by phase, and the objective of all.
+    pub fn words(&self) -> String {
+        let phases = self.phases.0.iter().zip(&self.units_of_phases);
+        let phases = phases.map(|((name, run), units)| format!(" {name}\n{}", run.words(units)));
+        let value = |value: f64| self.units.value("objective", value, 12);
+        let objective = self.objective.map(|it| format!(" objective {}\n", value(it)));
+        phases.chain(objective).collect()
+    }
+}

@@ -185,6 +185,20 @@ fn several_solutions_stand_side_by_side() {
     assert_eq!(of, [(Some(0), Some("line")), (Some(1), Some("line"))]);
 }
 
+/// The letters of a PDF are in it.
+#[test]
+fn pictures_for_papers_are_svg_or_pdf() {
+    let folder = solutions("page_pdf");
+    for (name, begin) in [("x.svg", "<svg"), ("x.pdf", "%PDF-")] {
+        let plot = ["plot", "all/ramp.1.sol.json", "--signal", "x", "--out", name];
+        expect_exit(&fdcc(&folder, &plot, ""), 0, name);
+        let bytes = std::fs::read(folder.join(name)).expect("it was written");
+        assert!(bytes.starts_with(begin.as_bytes()), "{name}");
+        let has_letters = String::from_utf8_lossy(&bytes).contains("DejaVuSans");
+        assert_eq!(has_letters, name == "x.pdf");
+    }
+}
+
 #[test]
 fn what_is_no_solution_is_refused() {
     let folder = solutions("page_refused");
@@ -195,7 +209,7 @@ fn what_is_no_solution_is_refused() {
         (&["report", "empty.json"], 4, "empty.json is not a solution: it has no `time`"),
         (&["report", "x"].repeat(9)[1..], 3, ""),
         (&["report"], 3, "<SOLUTION>"),
-        (&["plot", "all/ramp.1.sol.json", "--out", "x.pdf"], 3, "ends in .svg"),
+        (&["plot", "all/ramp.1.sol.json", "--out", "x.png"], 3, "ends in .svg or .pdf"),
         (
             &["plot", "all/ramp.1.sol.json", "--signal", "y", "--out", "x.svg"],
             3,

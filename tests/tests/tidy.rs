@@ -81,6 +81,8 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("amd", &["runtime/src/linalg/sparse_ldl/tree.rs"]),
     ("miette", &["cli/src/drawing/render.rs"]),
     ("plotters", &["cli/src/page/svg.rs", "cli/src/page/cells.rs"]),
+    ("svg2pdf", &["cli/src/page/pdf.rs"]),
+    ("dejavu", &["cli/src/page/pdf.rs"]),
     ("similar", &["cli/src/drawing/difference.rs"]),
     ("serde", &["cli/src/output/", "cli/src/page/", "server/src/dispatch.rs"]),
     ("serde_json", &["cli/src/output/", "cli/src/page/", "cli/tests/", "server/", "tests/"]),

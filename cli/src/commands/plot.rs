@@ -1,15 +1,15 @@
-//! `fdcc plot`: signals of a solution for papers, as SVG.
+//! `fdcc plot`: signals of a solution for papers, as SVG or PDF.
 
 use super::report::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::files;
 use crate::page::figures::{Figure, figures};
-use crate::page::{json::Json, svg};
+use crate::page::{json::Json, pdf, svg};
 use clap::Args;
 use std::path::PathBuf;
 
-/// Draw signals of a solution as SVG
+/// Draw signals of a solution as SVG or PDF
 #[derive(Args)]
 pub struct Plot {
     /// The .sol.json of a solve
@@ -22,7 +22,7 @@ pub struct Plot {
     /// Draw it over this signal instead of over the time
     #[arg(long, value_name = "NAME", requires = "signal")]
     over: Option<String>,
-    /// Where the picture is written
+    /// Where the picture is written: a name that ends in .svg or .pdf
     #[arg(long, value_name = "FILE.svg")]
     out: PathBuf,
 }
@@ -34,8 +34,9 @@ impl Plot {
     }
 
     fn write(&self) -> Result<(), Failure> {
-        if self.out.extension().is_none_or(|it| it != "svg") {
-            let message = "`--out` needs a name that ends in .svg: that is what is written";
+        let ending = self.out.extension().and_then(|it| it.to_str()).unwrap_or_default();
+        if !["svg", "pdf"].contains(&ending) {
+            let message = "`--out` needs a name that ends in .svg or .pdf: one of them is written";
             return Err(Failure::Usage(message.into()));
         }
         let document = [Json::read(&self.solution)?];
@@ -48,7 +49,10 @@ impl Plot {
                 return Err(Failure::Usage("`--over` is for one `--signal`".into()));
             }
         };
-        files::write_file(&self.out, &picture)
+        match ending {
+            "pdf" => files::write_file(&self.out, pdf::of(&picture)),
+            _ => files::write_file(&self.out, &picture),
+        }
     }
 
     fn wanted<'f>(&self, all: &'f [Figure]) -> Result<Vec<&'f Figure>, Failure> {

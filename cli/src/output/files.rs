@@ -26,8 +26,8 @@ pub fn write_all(
 }
 
 /// Writes a file, or replaces the one that is there.
-pub fn write_file(path: &Path, text: &str) -> Result<(), Failure> {
-    replace(path, text).map_err(|error| failure(path, &error))
+pub fn write_file(path: &Path, content: impl AsRef<[u8]>) -> Result<(), Failure> {
+    replace(path, content).map_err(|error| failure(path, &error))
 }
 
 fn failure(place: &Path, error: &io::Error) -> Failure {
@@ -41,20 +41,21 @@ pub fn create(path: &Path, text: &str) -> io::Result<()> {
     replace(path, text).inspect_err(|_| drop(fs::remove_file(path)))
 }
 
-/// Gives a file this text, or leaves it as it is. A symbolic link stays one: the file that it leads
+/// Gives a file this content, or leaves it as it is. A symbolic link stays one: the file that it leads
 /// to is replaced.
-pub fn replace(path: &Path, text: &str) -> io::Result<()> {
+pub fn replace(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
+    let content = content.as_ref();
     let path = followed(path)?;
     // What may not be written, such as a read-only file, is not replaced either.
     let old = match OpenOptions::new().write(true).open(&path) {
-        Ok(mut old) if !old.metadata()?.is_file() => return old.write_all(text.as_bytes()),
+        Ok(mut old) if !old.metadata()?.is_file() => return old.write_all(content),
         Ok(old) => Some(old.metadata()?),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
         Err(error) => return Err(error),
     };
     let folder = path.parent().filter(|it| !it.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (beside, file) = new_file(folder)?;
-    let written = fill(file, text, old.as_ref()).and_then(|()| fs::rename(&beside, &path));
+    let written = fill(file, content, old.as_ref()).and_then(|()| fs::rename(&beside, &path));
     written.inspect_err(|_| drop(fs::remove_file(&beside)))?;
     sync_folder(folder);
     Ok(())
@@ -85,9 +86,9 @@ fn new_file(folder: &Path) -> io::Result<(PathBuf, File)> {
     }
 }
 
-/// Writes a text to the disk, with the owner and the permissions of the file that it replaces.
-fn fill(mut file: File, text: &str, old: Option<&Metadata>) -> io::Result<()> {
-    file.write_all(text.as_bytes())?;
+/// Writes a content to the disk, with the owner and the permissions of the file that it replaces.
+fn fill(mut file: File, content: &[u8], old: Option<&Metadata>) -> io::Result<()> {
+    file.write_all(content)?;
     if let Some(old) = old {
         keep_owner(&file, old);
         file.set_permissions(old.permissions())?;

@@ -10,6 +10,7 @@ pub mod figures;
 mod headline;
 pub mod json;
 pub mod notebook;
+pub mod pdf;
 mod runs;
 mod sections;
 mod strips;

@@ -153,6 +153,65 @@ fn a_kink_is_found_with_its_reason_and_both_derivatives() {
     }
 }
 
+/// An objective that is another one on one side has an infinite derivative there. Each is 0 or 1
+/// more where something happens: below `p`, or above it.
+#[test]
+fn where_the_objective_jumps_a_derivative_is_infinite() {
+    let jump = "dynamics { x' = -1  y' = 0 }
+        jump j on s falling at most 1 { y := 1 }  minimize y(end)";
+    let at = |p: &str| {
+        format!(
+            "param p = {p}  time t in [0, 1]  state x start p  state y start 0
+            surface s = x {jump}"
+        )
+    };
+    let both = "param p = 1  time t in [0, 2]  state x start 1  state y start p  state z start 1
+        surface sx = x  surface sy = y  dynamics { x' = -1  y' = -1  z' = 0 }
+        jump a on sx falling at most 1 { z := 2*z }  jump b on sy falling at most 1 { z := z + 1 }
+        minimize z(end)";
+    let grazed = "param p = 0  time t in [0, 2]  state h start 1 + p  state v start -2
+        state y start 0  surface s = h  dynamics { h' = v  v' = 2  y' = 0 }
+        jump j on s falling at most 1 { y := 1 }  minimize y(end)";
+    // It happens at the end, at the start, before another jump, or not at all.
+    for text in [at("1").as_str(), at("0").as_str(), both, grazed] {
+        let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
+        let (by, options) = ([parameter(&system, "p")], Options::default());
+        let found = gradient(&system, &Controls::Guess, &options, &by).expect("it ends");
+        assert!(!found.nondifferentiabilities.is_empty(), "{text}");
+        let [below, above] = one_sided(&system, &Controls::Guess, &options, &by)[0];
+        let sides = [below, above].map(|it| it.expect("both sides end").abs());
+        assert!(sides.contains(&f64::INFINITY) && sides.contains(&0.0), "{text}: {sides:?}");
+    }
+}
+
+/// `z(end) = 1 + max(0, p)`, `1 + |p|`, and `x(end) = |p|`: the surface is met on a kink of its
+/// function. Beside it there is none.
+#[test]
+fn a_surface_that_is_met_on_a_kink_is_seen() {
+    let crossing = "z' in match s { below => 0, above => 1 } }  minimize z(end)";
+    let larger = format!(
+        "state y start -1 + p  state z start 0  surface s = max(x, y)
+         dynamics {{ x' = 1  y' = 1  {crossing}"
+    );
+    let farther = format!(
+        "state y start p  state z start 0  surface s = x + abs(y)
+         dynamics {{ x' = 1  y' = 0  {crossing}"
+    );
+    let slides = "state y start p  surface s = x - abs(y)
+        dynamics { x' in 0.5 - 2*Sgn(s)  y' = 0 }  minimize x(end)";
+    for text in [larger.as_str(), &farther, slides] {
+        for p in [0.0, 0.25] {
+            let text = format!("param p = {p}  time t in [0, 2]  state x start -1 {text}");
+            let system = compile_sensitivities(&meaning(&text)).expect("it can be simulated");
+            let by = [parameter(&system, "p")];
+            let found = gradient(&system, &Controls::Guess, &Options::default(), &by);
+            let kink = found.expect("it ends").kink;
+            let is_met = kink.as_ref().is_some_and(|it| matches!(it.met, KinkMet::BySurface(_)));
+            assert_eq!(is_met, p == 0.0, "{text}: {kink:?}");
+        }
+    }
+}
+
 /// A start on a surface that is held: by a direction that leaves it there is no second derivative.
 #[test]
 fn a_start_that_slides_has_second_derivatives_along_the_surface_only() {

@@ -41,8 +41,8 @@ pub fn create(path: &Path, text: &str) -> io::Result<()> {
     replace(path, text).inspect_err(|_| drop(fs::remove_file(path)))
 }
 
-/// Gives a file this content, or leaves it as it is. A symbolic link stays one: the file that it leads
-/// to is replaced.
+/// Gives a file this content, or leaves it as it is. A symbolic link stays one: the file that it
+/// leads to is replaced.
 pub fn replace(path: &Path, content: impl AsRef<[u8]>) -> io::Result<()> {
     let content = content.as_ref();
     let path = followed(path)?;

@@ -74,7 +74,8 @@ pub struct Other {
     pub gradient: Named<Derivative>,
 }
 
-/// The derivatives from both sides; nothing where a side has no trajectory to the end.
+/// The derivatives from both sides; nothing where a side has no trajectory to the end, or where the
+/// value jumps there.
 #[derive(Clone, Copy, Serialize)]
 pub struct Sides {
     pub below: Option<f64>,
@@ -241,6 +242,9 @@ fn kink_warning(kink: &Kink, source: &SourceFile) -> String {
         }
         KinkMet::ByJump(time) => {
             format!("the jump at t = {} is on {which}: {one_side}", short(time))
+        }
+        KinkMet::BySurface(time) => {
+            format!("at t = {} a surface is met on {which}: {one_side}", short(time))
         }
         KinkMet::AtEnd => format!("the trajectory ends on {which}: {one_side}"),
     }

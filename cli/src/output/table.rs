@@ -55,7 +55,8 @@ fn cells(swept: &[(&str, &str)], row: &Scalars, units: &Units) -> Vec<String> {
         format!("{:.3}", row.seconds.total),
         row.status.replace('_', " "),
     ];
-    values.chain([aligned(number(row.objective), DIGITS)]).chain(free).chain(rest).collect()
+    let objective = aligned(units.scaled("objective", number(row.objective)), DIGITS);
+    values.chain([objective]).chain(free).chain(rest).collect()
 }
 
 /// Aligned columns with a head; nothing without rows.

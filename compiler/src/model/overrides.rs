@@ -36,6 +36,13 @@ impl Model {
             return Err(self.no_param(name));
         };
         let own = self.unit_of_param(index).cloned().unwrap_or_else(|| plain_number(name));
+        if let Some(other) = self.other_unit(&own).filter(|_| given.dimension.is_none()) {
+            return Err(format!(
+                "`{name}` has no unit of its own, and the model writes {} for what it measures: \
+                 write the unit, as in `{name}=1[{}]`",
+                other.unit, other.unit
+            ));
+        }
         let value = in_unit(&own, text, given)?;
         let range = self.params[index].range;
         let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
@@ -81,6 +88,14 @@ impl Model {
             }
             _ => value.into(),
         }
+    }
+
+    /// The unit in which the text writes what a name measures whose own unit it does not say, if
+    /// that is not the one of SI: a plain number could be meant in either.
+    fn other_unit(&self, own: &NamedUnit) -> Option<&NamedUnit> {
+        let is_like = |it: &&NamedUnit| it.dimension == own.dimension && it.scale != own.scale;
+        let is_found = !own.written && !own.unit.is_empty() && own.scale == 1.0;
+        self.units.iter().filter(|it| it.written).find(is_like).filter(|_| is_found)
     }
 
     fn unit_of_param(&self, index: usize) -> Option<&NamedUnit> {

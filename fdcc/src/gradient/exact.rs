@@ -91,7 +91,10 @@ fn terms(found: &Sensitivity, quantity: usize) -> f64 {
 /// events meet it may be neither's, though there is one. Nothing here is absolute: derivatives have
 /// units.
 fn common(sides: [Option<f64>; 2], own: f64, terms: f64) -> Option<f64> {
-    let [Some(below), Some(above)] = sides else { return None };
+    let [below, above] = [sides[0]?, sides[1]?];
+    if below.is_infinite() || above.is_infinite() {
+        return None;
+    }
     let size = [below, above, own].iter().fold(terms, |size, value| size.max(value.abs()));
     let is_near = |a: f64, b: f64| (a - b).abs() <= SIDES * size;
     match is_near(below, own) && is_near(above, own) {
@@ -108,6 +111,7 @@ mod tests {
     fn a_derivative_is_the_same_from_both_sides() {
         let cases = [
             ([Some(1.0), Some(1.0)], 1.0, 0.0, Some(1.0)),
+            ([Some(f64::INFINITY), Some(0.0)], 0.0, 0.0, None),
             ([Some(1000.0), Some(1000.001)], 1000.0, 0.0, Some(1000.0)),
             ([Some(0.0), Some(0.0)], 0.0, 0.0, Some(0.0)),
             ([Some(0.0), Some(1.0)], 1.0, 0.0, None),

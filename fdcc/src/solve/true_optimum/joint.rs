@@ -218,8 +218,8 @@ pub(super) fn is_stationary(found: &NlpSolution) -> bool {
     match found.status {
         Status::Solved => error <= STATIONARY,
         Status::Acceptable | Status::IterationLimit | Status::NumericalFailure => {
-            // Large multipliers excuse an error that would be worth something without them; what is
-            // left of theirs in the end is rounding.
+            // The error is for the size of the multipliers. What these say can still be gained is
+            // not, and where they are large without a reason it tells nothing but rounding.
             let is_told = found.improvement <= WORTH_NOTHING || error <= ROUNDING;
             is_told && error.max(found.constraint_violation) <= STATIONARY
         }

@@ -9,6 +9,7 @@ use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
 use crate::sensitivity::nondifferentiability::objective_kink::{Direction, objective_kink};
 use crate::sensitivity::nondifferentiability::parameter_kink::parameter_kink;
 use crate::sensitivity::nondifferentiability::reset_kink::{Moved, reset_kink};
+use crate::sensitivity::nondifferentiability::surface_kink::surface_kink;
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
 use crate::simulate::{Controls, Options, Piece, Simulation, Status, System, Tape, simulate};
 use nalgebra::DMatrix;
@@ -123,12 +124,22 @@ pub fn gradient(
         adjoint,
         costates,
         nondifferentiabilities: nondifferentiabilities(&pieces),
-        kink: parameter_kink(&lineariser, tape, &parameters(quantities))
-            .or_else(|| first_kink(&lineariser, tape))
-            .or_else(|| reset_kink(&lineariser, tape, &parameters(quantities), &before_events))
-            .or(kink),
+        kink: kink_met(&lineariser, tape, &parameters(quantities), &before_events).or(kink),
         simulation,
     })
+}
+
+/// The first kink of anything but the objective.
+fn kink_met(
+    lineariser: &Lineariser,
+    tape: &Tape,
+    parameters: &[usize],
+    events: &[Moved],
+) -> Option<Kink> {
+    parameter_kink(lineariser, tape, parameters)
+        .or_else(|| first_kink(lineariser, tape))
+        .or_else(|| reset_kink(lineariser, tape, parameters, events))
+        .or_else(|| surface_kink(lineariser, tape, events))
 }
 
 /// The states that quantities move before a piece, if it is an event.

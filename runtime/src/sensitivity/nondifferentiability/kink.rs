@@ -10,10 +10,10 @@ use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser, slidin
 use crate::simulate::{Cause, Instant, Piece, Tape};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-/// A kink that a trajectory stays on, jumps on, or ends on.
+/// A kink that a trajectory stays on, jumps on, meets a surface on, or ends on.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Kink {
-    /// The right side, what a jump assigns, or the objective.
+    /// The right side, what a jump assigns, the function of a surface, or the objective.
     pub of: Origin,
     /// Who is on it.
     pub met: KinkMet,
@@ -26,6 +26,8 @@ pub enum KinkMet {
     Since(f64),
     /// Where it jumps, at this time.
     ByJump(f64),
+    /// Where it meets a surface, at this time.
+    BySurface(f64),
     /// At its end.
     AtEnd,
     /// At no time: the parameters alone are on it, wherever the state is.

@@ -9,11 +9,12 @@ pub(crate) mod kink;
 pub(crate) mod objective_kink;
 pub(crate) mod parameter_kink;
 pub(crate) mod reset_kink;
+pub(crate) mod surface_kink;
 
 use super::linearised::linearisation::{Jacobian, Lineariser};
 use super::linearised::variational_equation::LinearTape;
 pub(crate) use crate::simulate::TOUCHING;
-use crate::simulate::{Cause, Instant, Mode, Piece, Tape, Touch};
+use crate::simulate::{Cause, Change, EventKind, Instant, Mode, Piece, Tape, Touch};
 use nalgebra::DVector;
 
 /// Cosines between a field and a normal below this are grazing.
@@ -173,10 +174,15 @@ impl Watch<'_> {
                     note(NondifferentiabilityKind::Coincident, surface);
                 }
             }
-            Cause::Start => met
-                .into_iter()
-                .filter(|i| !changes.iter().any(|it| it.surface == *i))
-                .for_each(|surface| note(NondifferentiabilityKind::Coincident, surface)),
+            Cause::Start => {
+                let is_jump = |it: &Change| matches!(it.kind, EventKind::Jump(_));
+                let is_known = |i: usize| changes.iter().any(|it| it.surface == i && !is_jump(it));
+                let jumped = changes.iter().filter(|it| is_jump(it)).map(|it| it.surface);
+                met.into_iter()
+                    .filter(|i| !is_known(*i))
+                    .chain(jumped)
+                    .for_each(|surface| note(NondifferentiabilityKind::Coincident, surface));
+            }
             Cause::Controls => met
                 .into_iter()
                 .for_each(|surface| note(NondifferentiabilityKind::Coincident, surface)),

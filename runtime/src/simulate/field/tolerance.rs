@@ -28,6 +28,8 @@ pub(crate) struct Tolerance {
     start: Vec<f64>,
     /// How large each counts at least.
     least: Vec<f64>,
+    /// The same once no step was short enough, as where a tank runs dry.
+    dregs: Vec<f64>,
     /// By how much their rates are uncertain.
     doubts: Vec<f64>,
 }
@@ -37,6 +39,7 @@ impl Tolerance {
         let sizes: Vec<f64> = start.iter().map(|x| x.abs()).collect();
         let fresh = sizes.clone();
         let (least, doubts) = (vec![LEAST; start.len()], vec![0.0; start.len()]);
+        let dregs = vec![0.0; start.len()];
         let (ways, start) = (vec![0.0; start.len()], start.to_vec());
         Tolerance {
             rtol: options.rtol,
@@ -46,6 +49,7 @@ impl Tolerance {
             ways,
             start,
             least,
+            dregs,
             doubts,
         }
     }
@@ -70,7 +74,8 @@ impl Tolerance {
     /// Of a state that is `before` and `after` a step of length `h`.
     pub fn of(&self, i: usize, [before, after]: [f64; 2], h: f64) -> f64 {
         let size = before.abs().max(after.abs());
-        let atol = self.atol.unwrap_or(PART * size.max(self.fresh[i]).max(self.least[i]));
+        let least = self.least[i].max(self.dregs[i]);
+        let atol = self.atol.unwrap_or(PART * size.max(self.fresh[i]).max(least));
         atol + self.rtol * size + h * self.doubts[i]
     }
 
@@ -83,6 +88,15 @@ impl Tolerance {
     pub fn may_be_rough(&self, x: &[f64]) -> bool {
         let is_small = |(x, least): (&f64, &f64)| *x != 0.0 && x.abs() < PART / self.rtol * least;
         x.iter().zip(&self.least).any(is_small)
+    }
+
+    /// From now on what rounding leaves of the way of a state is nothing, where no step is short
+    /// enough otherwise; whether that is new.
+    pub fn leave_dregs(&mut self) -> bool {
+        let dregs: Vec<f64> = self.ways.iter().map(|way| f64::EPSILON / PART * way).collect();
+        let is_new = dregs.iter().zip(&self.dregs).any(|(dregs, known)| *dregs > 2.0 * known);
+        self.dregs = dregs;
+        is_new && self.atol.is_none()
     }
 
     /// From now on rates are certain.

@@ -229,7 +229,10 @@ impl Run<'_> {
             self.counts.rejected += 1;
             (h, is_short) = (next, false);
             if h <= SAME_TIME * self.t.abs().max(h * STUCK).max(f64::MIN_POSITIVE) {
-                return Err(self.stuck());
+                if !self.field.tolerance.leave_dregs() {
+                    return Err(self.stuck());
+                }
+                h = wanted;
             }
         }
     }

@@ -1,7 +1,7 @@
 //! How a simulation ended, and the object that says why it did not reach the last time.
 
 use super::named::Named;
-use super::number::{short, significant};
+use super::units::Units;
 use fdcc::names::event_name;
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
@@ -93,20 +93,23 @@ impl Ending {
     }
 
     /// Why the last time was not reached, in words.
-    pub fn why(&self) -> Option<String> {
+    pub fn why(&self, units: &Units) -> Option<String> {
+        let shown = |time: f64, digits| units.value("time", time, digits);
         Some(match self.why.as_ref()? {
             Why::NotUnique { surface, time, candidates, .. } => {
-                not_unique(surface, *time, candidates)
+                not_unique(surface, &shown(*time, 6), candidates)
             }
-            Why::Zeno { jump, surface, limit_time } => zeno(jump.as_deref(), surface, *limit_time),
+            Why::Zeno { jump, surface, limit_time } => {
+                zeno(jump.as_deref(), surface, &shown(*limit_time, 12))
+            }
             Why::NotFinite { line, of, time, .. } => {
-                format!("not finite: `{of}` (line {line}) at t = {}", significant(*time, 12))
+                format!("not finite: `{of}` (line {line}) at t = {}", shown(*time, 12))
             }
             Why::Discontinuous { surface, time, .. } => {
                 format!(
                     "the switching function of `{surface}` jumps over 0 at t = {}: a surface is \
                      where it is 0; write one that is continuous there",
-                    significant(*time, 12)
+                    shown(*time, 12)
                 )
             }
             Why::StepLimit { .. } => {
@@ -115,8 +118,10 @@ impl Ending {
                  explicit"
                     .into()
             }
-            Why::TimeLimit { time, .. } => format!("time limit: it came to t = {}", short(*time)),
-            Why::Interrupted { time, .. } => format!("interrupted at t = {}", short(*time)),
+            Why::TimeLimit { time, .. } => {
+                format!("time limit: it came to t = {}", shown(*time, 6))
+            }
+            Why::Interrupted { time, .. } => format!("interrupted at t = {}", shown(*time, 6)),
         })
     }
 }
@@ -137,17 +142,16 @@ fn place(
     }
 }
 
-fn not_unique(surface: &str, time: f64, candidates: &[String]) -> String {
+fn not_unique(surface: &str, time: &str, candidates: &[String]) -> String {
     let ways = match candidates {
         [] => "in no single way that can be told".to_string(),
         [only] => format!("like this, but perhaps also otherwise: {only}"),
         several => format!("in several ways: {}", several.join(" | ")),
     };
-    format!("not unique: at t = {} on `{surface}` the state could go on {ways}", short(time))
+    format!("not unique: at t = {time} on `{surface}` the state could go on {ways}")
 }
 
-fn zeno(jump: Option<&str>, surface: &str, limit_time: f64) -> String {
-    let time = significant(limit_time, 12);
+fn zeno(jump: Option<&str>, surface: &str, time: &str) -> String {
     match jump {
         Some(jump) => {
             format!(

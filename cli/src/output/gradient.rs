@@ -2,7 +2,7 @@
 
 use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
-use super::number::{scientific, short, significant};
+use super::number::{scientific, significant};
 use super::units::Units;
 use crate::version::VERSION;
 use fdcc::{By, Exact, Gradient, Model, Stepped};
@@ -105,8 +105,9 @@ impl GradientDocument {
         let Gradient { system, by, .. } = found;
         let (source, method) = (model.source(), &model.meaning().method);
         let gradient = &exact.gradient;
-        let mut warnings = doubts(system, exact);
-        warnings.extend(exact.found.kink.as_ref().map(|kink| kink_warning(kink, source)));
+        let units = Units::from(model);
+        let mut warnings = doubts(system, exact, &units);
+        warnings.extend(exact.found.kink.as_ref().map(|kink| kink_warning(kink, source, &units)));
         let second = has_second.then(|| found.second());
         let second = second.and_then(|found| found.map_err(|why| warnings.push(why)).ok());
         let mut other = |what: &str, found: Result<Stepped, String>| match found {
@@ -180,9 +181,9 @@ impl Reason {
     }
 
     /// `a grazing of \`zero\` at t = 1`
-    pub fn words(&self) -> String {
+    pub fn words(&self, units: &Units) -> String {
         let Reason { kind, surface, time } = self;
-        let time = significant(*time, 9);
+        let time = units.value("time", *time, 9);
         match *kind {
             "grazing" => format!("`{surface}` is grazed at t = {time}"),
             "corner" => format!("`{surface}` meets another surface at t = {time}"),
@@ -208,7 +209,7 @@ fn kind_name(kind: NondifferentiabilityKind) -> &'static str {
 }
 
 /// What else is to be said of an exact gradient.
-fn doubts(system: &System, exact: &Exact) -> Vec<String> {
+fn doubts(system: &System, exact: &Exact, units: &Units) -> Vec<String> {
     let mut doubts = Vec::new();
     if !exact.agrees() {
         let agreement = scientific(exact.found.agreement, 1);
@@ -219,14 +220,15 @@ fn doubts(system: &System, exact: &Exact) -> Vec<String> {
     if let Some(first) = agreed.next() {
         let others = agreed.count();
         let others = if others > 0 { format!(" (and {others} more)") } else { String::new() };
-        let first = Reason::new(system, first).words();
+        let first = Reason::new(system, first).words(units);
         doubts.push(format!("{first}{others}; the derivatives from both sides agree"));
     }
     doubts
 }
 
 /// What is to be known of a kink that the trajectory stays on.
-fn kink_warning(kink: &Kink, source: &SourceFile) -> String {
+fn kink_warning(kink: &Kink, source: &SourceFile, units: &Units) -> String {
+    let shown = |time: f64| units.value("time", time, 6);
     let line = source.line_column(kink.of.span.0).line;
     let which = format!(
         "a kink of `{}` (line {line}: `abs`, `min`, `max` or a knot of `piecewise`)",
@@ -238,13 +240,13 @@ fn kink_warning(kink: &Kink, source: &SourceFile) -> String {
             format!("the parameters are on {which}: by them there is no derivative")
         }
         KinkMet::Since(time) => {
-            format!("from t = {} on the state stays on {which}: {one_side}", short(time))
+            format!("from t = {} on the state stays on {which}: {one_side}", shown(time))
         }
         KinkMet::ByJump(time) => {
-            format!("the jump at t = {} is on {which}: {one_side}", short(time))
+            format!("the jump at t = {} is on {which}: {one_side}", shown(time))
         }
         KinkMet::BySurface(time) => {
-            format!("at t = {} a surface is met on {which}: {one_side}", short(time))
+            format!("at t = {} a surface is met on {which}: {one_side}", shown(time))
         }
         KinkMet::AtEnd => format!("the trajectory ends on {which}: {one_side}"),
     }

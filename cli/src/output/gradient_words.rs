@@ -1,6 +1,6 @@
 //! A gradient in words: the verdict, the derivatives beside those that others compute, the events.
 
-use super::gradient::{Derivative, GradientDocument, Reason};
+use super::gradient::{Derivative, GradientDocument};
 use super::named::Named;
 use super::number::{scientific, short, significant};
 use super::table::with_head;
@@ -12,7 +12,7 @@ impl GradientDocument {
     /// A verdict, the derivatives, the events.
     pub fn words(&self) -> String {
         let Some(value) = self.value else {
-            let why = self.ending.why().unwrap_or_default();
+            let why = self.ending.why(&self.units).unwrap_or_default();
             return format!(
                 " NO GRADIENT of {}: the simulation does not reach the end\n {why}\n",
                 self.of
@@ -37,7 +37,7 @@ impl GradientDocument {
             (false, true) if self.has_kink => "NOT TRUSTED: it is on a kink".into(),
             (false, true) => format!("NOT TRUSTED: forward and adjoint differ by {agreement}"),
             (false, false) => {
-                let why = self.cause.as_ref().map(Reason::words).unwrap_or_default();
+                let why = self.cause.as_ref().map(|it| it.words(&self.units)).unwrap_or_default();
                 format!("NOT DIFFERENTIABLE: {why}")
             }
         }

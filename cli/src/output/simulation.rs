@@ -136,7 +136,7 @@ impl RunEntry {
         let objective = self.objective.map(|it| format!("objective {}  ", value(it)));
         let events = super::plural(self.events.len(), "event");
         let completed = format!("completed: {events}, {} steps", self.counts.steps);
-        let last = self.ending.why().unwrap_or(completed);
+        let last = self.ending.why(units).unwrap_or(completed);
         text += &format!(" {last}\n end: {}\n", units.pairs(&self.end, 12));
         if !integrals.is_empty() || objective.is_some() {
             text += &format!(" {}{integrals}\n", objective.unwrap_or_default());

@@ -128,7 +128,7 @@ impl VerifyDocument {
     }
 
     fn verdict(&self) -> String {
-        verdict(&self.verification, self.ending.why(), &self.units)
+        verdict(&self.verification, self.ending.why(&self.units), &self.units)
     }
 
     fn numbers(&self) -> String {
@@ -203,7 +203,7 @@ impl VerifyPhasesDocument {
 
     /// The verdict, then the tables of each phase, then those of the links.
     pub fn words(&self) -> String {
-        let why = self.phases.0.iter().find_map(|(_, it)| it.ending.why());
+        let why = self.phases.0.iter().find_map(|(_, it)| it.ending.why(&self.units));
         let mut words = verdict(&self.verification, why, &self.units);
         for (name, phase) in &self.phases.0 {
             words += &format!("\n {name}\n{}", phase.tables());

@@ -245,7 +245,7 @@ pub(crate) mod arrival {
 
 pub(crate) mod events {
     /// More jumps than this at one time never end, nor does what reaches a surface so often without
-    /// leaving it.
+    /// leaving it, nor what is decided anew so often.
     pub(crate) const MOST_AT_ONCE: usize = 100;
     /// A way between two jumps of so many rounding errors will soon be hidden by them.
     pub(crate) const SMALL_WAY: f64 = 1e3;

@@ -4,10 +4,12 @@
 //! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply
 //! each other). If `B` is a P-matrix, or positive definite where there are balls, the solution is
 //! the only one. Otherwise all combinations of sides are tried, and only a single consistent one is
-//! taken. Where there is none, those in which the state rests on surfaces are told.
+//! taken, or any of several that are the same motion ([`dissipation`]). Where there is none, those in
+//! which the state rests on surfaces are told.
 
 pub(crate) mod ball;
 pub(crate) mod complementarity;
+mod dissipation;
 
 use super::field::direction::length;
 use super::field::normals::Normals;
@@ -171,8 +173,30 @@ impl Corner<'_, '_> {
         {
             return Ok(found.swap_remove(0));
         }
+        if !found.is_empty() && self.is_one_motion(&found) {
+            return Ok(found.swap_remove(0));
+        }
         let candidates = found.iter().map(|choice| self.candidate(choice)).collect();
         Err(Status::NotUnique { surface: self.surfaces[0], candidates })
+    }
+
+    /// Whether all ways to go on are the same motion, and there is no other.
+    fn is_one_motion(&mut self, all: &[Choice]) -> bool {
+        let (_, b, _) = self.rates(&all[0].s);
+        if !self.balls.is_empty() || !dissipation::is_maximal(&b) {
+            return false;
+        }
+        let rates: Vec<DVector<f64>> = all.iter().map(|it| self.rate(&it.s)).collect();
+        let size = rates[0].amax().max(b.amax());
+        rates.iter().all(|it| (it - &rates[0]).amax() <= TIE * size)
+    }
+
+    /// How fast the state changes.
+    fn rate(&mut self, s: &DVector<f64>) -> DVector<f64> {
+        let mut all = self.field.selectors.clone();
+        self.surfaces.iter().zip(s.iter()).for_each(|(&i, s)| all[i] = *s);
+        let (rate, _) = self.field.with_selectors(self.t, self.x, &all);
+        DVector::from_iterator(rate.len(), rate.iter().copied())
     }
 
     fn candidate(&self, choice: &Choice) -> Candidate {

@@ -96,6 +96,12 @@ impl Run<'_> {
     /// Decides the modes at a point on some surfaces, with the jumps that follow.
     pub fn settle(&mut self, mut surfaces: Vec<usize>) -> Result<(), Status> {
         let known = self.record.events.len();
+        let (count, time) = self.decided;
+        self.decided = (if time == self.t { count + 1 } else { 0 }, self.t);
+        if self.decided.0 > MOST_AT_ONCE {
+            let surface = surfaces.first().copied().unwrap_or(0);
+            return Err(Status::NotUnique { surface, candidates: Vec::new() });
+        }
         for _ in 0..MOST_AT_ONCE {
             surfaces.retain(|&surface| !self.stays_beside(surface));
             let next = decide(&mut self.field, self.t, &self.x, &surfaces)?;

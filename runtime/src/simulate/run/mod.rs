@@ -38,6 +38,8 @@ pub(crate) struct Run<'a> {
     pub has_begun: bool,
     /// How often in a row a surface was reached and nothing happened.
     pub idle: usize,
+    /// How often modes were decided at one time, and when.
+    pub decided: (usize, f64),
     /// How it goes on.
     pub pace: Pace,
     pub counts: Counts,
@@ -80,6 +82,7 @@ impl<'a> Run<'a> {
             crossing_times: vec![ZenoDetector::default(); system.surfaces.len()],
             has_begun: false,
             idle: 0,
+            decided: (0, f64::NAN),
             pace: Pace::new(system.layout.x, options.method()),
             counts: Counts::default(),
         }

@@ -169,3 +169,61 @@ fn what_cannot_be_solved_yet_is_advice() {
         stdout(&output)
     );
 }
+
+/// A way of 1 m at 10 cm/s takes 10 s, a sixth of a minute.
+#[test]
+fn the_objective_of_a_sweep_is_in_its_unit() {
+    let text = "free T in [0.1, 100] [min] guess 2
+time t in [0, T] [min]
+state x [cm] start 0
+control u [cm/s] in [-10, 10]
+dynamics { x' = u }
+end x == 1 [m]
+minimize T
+";
+    let folder = folder("units_sweep_objective", &[("way.fdc", text.as_bytes())]);
+    let table = stdout(&fdcc(&folder, &["sweep", "way.fdc", "N=20,30", "--log", "none"], ""));
+    let row = table.lines().nth(1).expect("a row");
+    let cells: Vec<f64> = row.split_whitespace().take(3).filter_map(|it| it.parse().ok()).collect();
+    assert!(table.contains("objective [min]") && cells.len() == 3, "{table}");
+    assert!(cells[1..].iter().all(|it| (it - 1.0 / 6.0).abs() < 1e-6), "{table}");
+}
+
+/// The unit of `d` is found, and not written.
+#[test]
+fn a_plain_number_that_could_be_meant_in_two_units_is_refused() {
+    let text = |declared: &str| {
+        format!(
+            "{declared}\ntime t in [0, 1] [s]\nstate x [mm] start 0\n\
+             control u [mm/s] in [-9000, 9000]\ndynamics {{ x' = u }}\nend x == d\n\
+             minimize integral(u^2)\nmethod {{ N = 10 }}\n"
+        )
+    };
+    let (open, given) = (text("param d"), text("param d = 1"));
+    let files = [("open.fdc", open.as_bytes()), ("given.fdc", given.as_bytes())];
+    let folder = folder("units_found", &files);
+    let solved = |file: &str, set: &str| {
+        let arguments = ["solve", file, "--set", set, "--json", "--log", "none"];
+        json(&fdcc(&folder, &arguments, ""))["objective"].as_f64().expect("a number")
+    };
+    for (file, set) in [("given.fdc", "d=3"), ("open.fdc", "d=3[mm]")] {
+        assert!((solved(file, set) - 9e-6).abs() < 1e-12, "{file} {set}");
+    }
+    let output = fdcc(&folder, &["solve", "open.fdc", "--set", "d=3"], "");
+    expect_exit(&output, 3, "plain");
+    assert!(stderr(&output).contains("as in `d=1[mm]`"), "{}", stderr(&output));
+}
+
+/// Times in messages are in the unit of time, too.
+#[test]
+fn a_simulation_says_when_it_ends_in_the_unit_of_time() {
+    let text = "time t in [0, 5] [min]\nstate x [cm] start 1 [cm]\n\
+                dynamics { x' = x^2 / 1 [cm min] }\n";
+    let folder = folder("units_early", &[("early.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["simulate", "early.fdc"], "");
+    assert!(stdout(&output).contains(" min\n end: time = "), "{}", stdout(&output));
+    let said = stdout(&output);
+    let when = said.split("at t = ").nth(1).and_then(|it| it.split(' ').next());
+    let when: f64 = when.and_then(|it| it.parse().ok()).expect("a time");
+    assert!((when - 1.0).abs() < 1e-6, "{said}");
+}

@@ -201,3 +201,14 @@ fn large_multipliers_excuse_nothing() {
     let off = solution.objective() - least;
     assert!(!solution.is_certified() || off < 1e-6, "{off}");
 }
+
+/// At `h0 = 1` the motion ends on the surface of a jump that is worth 0.1 and does not happen; it
+/// does for all that begin lower, so that nothing is the least.
+#[test]
+fn an_end_on_the_surface_of_a_jump_is_no_optimum() {
+    let text = "free h0 in [0.5, 2] guess 1  time t in [0, 1]
+        state x start h0  state y start 0  surface s = x  dynamics { x' = -1  y' = 0 }
+        jump j on s falling at most 1 { y := 1 }  minimize (h0 - 1)^2 - 0.1*y(end)";
+    let solution = solved(text);
+    assert!(!solution.is_certified() || solution.objective() < -0.09, "{}", solution.objective());
+}

@@ -151,6 +151,8 @@ pub(crate) mod extremes {
 }
 
 pub(crate) mod modes {
+    /// What is smaller than this part of the largest entry of a matrix is 0.
+    pub(crate) const ROUNDING: f64 = 1e-10;
     /// Rates below this part of what they are made of are 0.
     pub(crate) const TIE: f64 = 1e-11;
     /// Beyond this many surfaces at a point, combinations are too many to list.

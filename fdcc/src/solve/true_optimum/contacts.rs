@@ -107,33 +107,6 @@ impl<'l> Contacts<'l> {
         }
     }
 
-    /// Whether the motion would rather go through the surface of a jump that does not happen.
-    pub fn is_at_jump(&self) -> bool {
-        (0..self.located.structure.phases.len()).any(|j| {
-            let first = self.row_of_switch(j, self.model.switches().len());
-            let states = self.limits.iter().filter(|it| it.state.is_some()).count();
-            let mut rows = first..self.located.chain.phases[j].path_bounds.len() - states;
-            rows.any(|row| {
-                let mut range = Extent::default();
-                self.extend(&mut range, j, row);
-                let runs = self.runs(j, row, range.length());
-                runs.iter().any(|run| self.is_pressed(j, row, run, range.length()))
-            })
-        })
-    }
-
-    /// Whether the multiplier of a bound is more of its size than the distance from the bound is of
-    /// the range, somewhere on a run: else it is what the barrier has left.
-    fn is_pressed(&self, j: usize, row: usize, run: &Run, range: f64) -> bool {
-        let problem = &self.located.chain.phases[j];
-        let values = path_values(problem, &self.located.outcome.phases[j].trajectory, row);
-        let (own, bounds) = (self.multipliers_of_row(j, row), problem.path_bounds[row]);
-        let gap = |value: f64| (value - bounds.lower).abs().min((value - bounds.upper).abs());
-        let farther = |k: usize| values[k..].iter().take(2).map(|it| gap(*it)).fold(0.0, f64::max);
-        let is_pressed = |k: usize| own[k].abs() * range / self.size(j) > farther(k) / range;
-        (run.first..run.behind).any(is_pressed)
-    }
-
     /// Whether a run is what is left of an arc or a touch point at that end of the phase.
     fn is_known(&self, j: usize, limit: usize, run: &Run) -> bool {
         let phases = &self.located.structure.phases;
@@ -284,7 +257,7 @@ impl<'l> Contacts<'l> {
         self.model.path.len() + rows
     }
 
-    fn extend(&self, range: &mut Extent, j: usize, row: usize) {
+    pub(super) fn extend(&self, range: &mut Extent, j: usize, row: usize) {
         let (problem, outcome) = (&self.located.chain.phases[j], &self.located.outcome.phases[j]);
         path_values(problem, &outcome.trajectory, row).into_iter().for_each(|it| range.add(it));
     }
@@ -352,7 +325,7 @@ fn nearest(before: f64, own: f64, after: f64) -> f64 {
 }
 
 /// The least and the largest of some values.
-struct Extent([f64; 2]);
+pub(super) struct Extent([f64; 2]);
 
 impl Default for Extent {
     fn default() -> Self {
@@ -365,7 +338,7 @@ impl Extent {
         self.0 = [self.0[0].min(value), self.0[1].max(value)];
     }
 
-    fn length(&self) -> f64 {
+    pub fn length(&self) -> f64 {
         (self.0[1] - self.0[0]).max(f64::MIN_POSITIVE)
     }
 }

@@ -19,6 +19,7 @@ mod costates;
 mod hold_sensitivities;
 mod insertion;
 mod joint;
+mod jump_edges;
 mod minimum;
 mod on_surfaces;
 mod orders;

@@ -11,6 +11,18 @@ pub(super) fn path_values(problem: &Problem, trajectory: &Trajectory, row: usize
     values.column(row).to_vec()
 }
 
+/// A path condition at the last time.
+pub(super) fn value_at_end(problem: &Problem, trajectory: &Trajectory, row: usize) -> f64 {
+    let mut point = Columns::new(problem.path.layout().point_inputs(), 1);
+    point.column_mut(0)[0] = 1.0;
+    for (at, column) in trajectory.states.iter().chain(&trajectory.controls).enumerate() {
+        point.column_mut(1 + at)[0] = column[column.len() - 1];
+    }
+    let mut values = Columns::new(problem.path.outputs(), 1);
+    problem.path.value(&point, &trajectory.parameters, &mut values);
+    values.column(row)[0]
+}
+
 /// The inputs of path conditions at the beginning of each interval.
 pub(super) fn points(problem: &Problem, trajectory: &Trajectory) -> Columns {
     let count = trajectory.time.len() - 1;

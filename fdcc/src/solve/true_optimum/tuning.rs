@@ -151,6 +151,8 @@ pub(super) mod across_surfaces {
     /// A surface is reached where it is smaller than this, for its largest value: what the barrier
     /// of a solve leaves of it where no force pulls.
     pub(crate) const NEAR: f64 = 1e-4;
+    /// The motion ends on the surface of a jump where it is smaller than this, for its range.
+    pub(crate) const ON_IT: f64 = 1e-6;
 }
 
 pub(super) mod insertion {

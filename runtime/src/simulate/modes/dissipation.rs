@@ -6,10 +6,8 @@
 //! subdifferential of a convex function, and the solution is unique (Brezis, *Operateurs maximaux
 //! monotones*, 1973, theorem 3.4), whichever selectors it has.
 
+use crate::simulate::tuning::modes::ROUNDING;
 use nalgebra::DMatrix;
-
-/// What is smaller than this part of the largest entry is 0.
-const ROUNDING: f64 = 1e-10;
 
 /// Whether `B` is of this kind.
 pub(super) fn is_maximal(b: &DMatrix<f64>) -> bool {

@@ -4,8 +4,8 @@
 //! The rates `r(s)` of the surfaces are linearised until nothing changes (selectors may multiply
 //! each other). If `B` is a P-matrix, or positive definite where there are balls, the solution is
 //! the only one. Otherwise all combinations of sides are tried, and only a single consistent one is
-//! taken, or any of several that are the same motion ([`dissipation`]). Where there is none, those in
-//! which the state rests on surfaces are told.
+//! taken, or any of several that are the same motion ([`dissipation`]). Where there is none, those
+//! in which the state rests on surfaces are told.
 
 pub(crate) mod ball;
 pub(crate) mod complementarity;

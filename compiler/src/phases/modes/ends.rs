@@ -64,7 +64,7 @@ impl Modes<'_> {
         rows
     }
 
-    /// Those on whose rates a control acts at once, that are not kept in the last phase, and not
+    /// Those that controls move, though not at once, that are not kept in the last phase, and not
     /// fixed by what is known of its end.
     fn limits_at_end(&mut self, known: &Independent) -> Vec<Constraint> {
         let last = &self.phases[self.phases.len() - 1];
@@ -76,8 +76,8 @@ impl Modes<'_> {
         for row in free {
             let value = self.between.division.at_own_end(row.value);
             let rates = rates(&moving, &mut self.between.division.graph, row.value);
-            let is_moved_at_once = rates.is_some_and(|it| it.len() == 2);
-            if is_moved_at_once && known.clone().add(self, value) {
+            let is_moved = rates.is_some_and(|it| it.len() > 1);
+            if is_moved && known.clone().add(self, value) {
                 let name = format!("{} at the end", row.place.name);
                 let place = Place { name, ..row.place };
                 rows.push(Constraint { place, value, range: row.range });

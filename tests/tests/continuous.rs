@@ -166,3 +166,17 @@ fn least_weighted(weight: Weight, [last, most, end]: [f64; 3]) -> [f64; 2] {
     let term = |w: &f64| w * control(*w, low).powi(2) * step;
     [weights.iter().map(term).sum(), weights.iter().map(|w| term(w).abs()).sum()]
 }
+
+/// To lose a tenth of the speed as late as possible takes a hundredth of a second, less than any
+/// interval of the first grid.
+#[test]
+fn a_short_arc_at_an_end_is_found() {
+    for (end, sign) in [("end v == 0.9  start v == 1", 1), ("start v == 0.9  end v == 1", -1)] {
+        let text = format!(
+            "time t in [0, 10]\nstate v\ncontrol q in [0, 10]\n
+            dynamics {{ v' = {}*q }}\n{end}\nmaximize integral(v)\n",
+            -sign
+        );
+        assert_certified(&solved(&text), 10.0 - 0.1 * 0.01 / 2.0, 1e-9);
+    }
+}

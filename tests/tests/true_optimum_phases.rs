@@ -148,3 +148,19 @@ fn a_switch_at_a_link_is_no_reason_to_stay_there() {
     );
     assert!(!solution.is_certified(), "{} {:?}", solution.objective(), solution.certificate);
 }
+
+/// The limit is on the second derivative of the state that a control moves, and holds until the
+/// first phase ends, where it is active: the least force through `(1, 0.5)` and `(2, 2)`, whose
+/// Gram matrix is `(1/3, 5/6; 5/6, 8/3)`.
+#[test]
+fn a_limit_holds_at_the_last_time_of_a_phase() {
+    let solution = solved(
+        "state h start 0\nstate w start 0\ncontrol b in [-9, 9]
+        phase first { time t in [0, 1] path h <= 0.5 }
+        phase second { time t in [1, 2] }
+        link first -> second { }
+        dynamics { h' = w  w' = b }\nend h == 2\nminimize integral(b^2)",
+    );
+    assert!(solution.is_certified(), "{:?}", solution.certificate);
+    assert!((solution.objective() - 12.0 / 7.0).abs() < 1e-8, "{}", solution.objective());
+}

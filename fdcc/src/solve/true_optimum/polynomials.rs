@@ -41,14 +41,21 @@ impl Polynomial<'_> {
         all.fold(0.0, f64::max)
     }
 
-    /// The bound at or beyond which it is where it begins or ends, or at the node next to that.
+    /// The bound at or beyond which it is where it begins or ends, or at the node next to that; the
+    /// opposite one where it leaves a bound within the interval: whatever is between the last node
+    /// and a switch, the polynomial does not get there.
     pub fn bound_at(&self, end: usize, Range { bounds, width, .. }: &Range) -> Arc {
         let slack = AT_BOUND * width;
-        let node = self.values[end * (self.values.len() - 1)];
+        let last = self.values.len() - 1;
+        let [node, rest] = [end * last, (1 - end) * last].map(|at| self.values[at]);
         let ends = [self.at(self.ends[end]), node];
+        let is_lower = |value: f64| value < bounds.lower + slack;
+        let is_upper = |value: f64| value > bounds.upper - slack;
         match () {
-            () if ends.iter().any(|it| *it < bounds.lower + slack) => Arc::Lower,
-            () if ends.iter().any(|it| *it > bounds.upper - slack) => Arc::Upper,
+            () if is_lower(rest) && !is_lower(node) && bounds.upper.is_finite() => Arc::Upper,
+            () if is_upper(rest) && !is_upper(node) && bounds.lower.is_finite() => Arc::Lower,
+            () if ends.into_iter().any(is_lower) => Arc::Lower,
+            () if ends.into_iter().any(is_upper) => Arc::Upper,
             () => Arc::Free,
         }
     }

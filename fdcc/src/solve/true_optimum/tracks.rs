@@ -53,11 +53,11 @@ impl Track<Arc> {
         lengths: [f64; 2],
     ) -> Self {
         let [begin, end] = bounds;
-        if begin != Arc::Free && self.pieces[0].1 == Arc::Free {
+        if begin != Arc::Free && self.pieces[0].1 != begin {
             self.pieces[0].0 = first + lengths[0];
             self.pieces.insert(0, (first, begin));
         }
-        if end != Arc::Free && self.pieces[self.pieces.len() - 1].1 == Arc::Free {
+        if end != Arc::Free && self.pieces[self.pieces.len() - 1].1 != end {
             self.pieces.push((last - lengths[1], end));
         }
         self

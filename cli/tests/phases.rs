@@ -217,6 +217,22 @@ fn a_solution_with_phases_is_simulated() {
     }
 }
 
+/// A ball that falls from 1 with g = 2 lands at 1, and rises to 1/4 at 1.5 with e = 1/2; the next
+/// phase begins there.
+#[test]
+fn jumps_within_phases_happen() {
+    let text = "phase fall { time t in [0, 1.5]  state h start 1  state v start 0
+  surface floor = h  dynamics { h' = v  v' = -2 }
+  jump bounce on floor falling { v := -0.5*v } }
+phase rise { time t in [1.5, 2.5]  state h  dynamics { h' = 1 } }
+link fall -> rise { same }  minimize rise.h(end)^2";
+    let folder = folder("phases_jump", &[("ball.fdc", text.as_bytes())]);
+    let document = json(&fdcc(&folder, &["simulate", "ball.fdc", "--json"], ""));
+    near(&document["phases"]["fall"]["events"][0]["time"], 1.0);
+    near(&document["phases"]["rise"]["end"]["h"], 1.25);
+    near(&document["objective"], 1.5625);
+}
+
 /// What stops in a phase is told, and no later phase is made up.
 #[test]
 fn a_phase_that_does_not_end_is_the_last() {

@@ -77,7 +77,8 @@ impl Model {
         }
         let terms = found.all.iter().filter_map(|it| it.result.objective);
         let objective = terms.sum::<f64>() + course.objective_of_links();
-        let has_objective = self.chain()?.phases[0].has_objective;
+        let of_phases = whole.phases.iter().any(|it| it.model.objective.is_some());
+        let has_objective = of_phases || whole.links.iter().any(|it| it.objective.is_some());
         found.objective = Some(objective).filter(|it| has_objective && it.is_finite());
         Ok(found)
     }

@@ -108,3 +108,32 @@ fn measured(start: f64) -> String {
     }
     rows
 }
+
+/// A block that is pushed with 2 until `T = 1` and slides on, with friction 0.5 that brings it to
+/// rest at 4. One experiment goes through both phases; rows at exact positions.
+#[test]
+fn one_experiment_goes_through_phases_with_friction() {
+    let position = |t: f64| match t {
+        t if t < 1.0 => 0.75 * t * t,
+        t if t < 4.0 => 0.75 + 1.5 * (t - 1.0) - 0.25 * (t - 1.0).powi(2),
+        _ => 3.0,
+    };
+    let rows = (0..=20).map(|row| 0.25 * f64::from(row) + 0.1);
+    let rows: String = rows.map(|t| format!("{t},{}\n", position(t))).collect();
+    let files = DataFiles::from(move |_| Ok(format!("t,x\n{rows}")));
+    let text = "data obs = csv(\"a.csv\") columns t, x
+        free mu in [0.1, 1.5] guess 0.8  free T in [0.4, 2] guess 1.3
+        state x start 0  state v start 0
+        phase push { time t in [0, T]  surface slip = v
+            dynamics { x' = v  v' in 2 - mu*Sgn(slip) } }
+        phase coast { time t in [T, 6]  surface slip = v
+            dynamics { x' = v  v' in -mu*Sgn(slip) } }
+        link push -> coast {}  fit obs: x sd 0.1";
+    let model = fdcc::check_with("fit", text.into(), Some(files)).model.expect("it is right");
+    let solution = certified(&model);
+    assert_near(&solution, &[("mu", 0.5), ("T", 1.0)], 1e-5);
+    assert!(solution.estimates().is_some_and(|it| it.rows == 21));
+    let simulated = model.simulate_phases(Some(&solution.record()), &fdcc::Accuracy::default());
+    let objective = simulated.expect("it can be simulated").objective.expect("it has one");
+    assert!(objective < 1e-8 && solution.objective() < 1e-8, "{objective}");
+}

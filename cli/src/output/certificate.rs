@@ -176,7 +176,7 @@ fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
         ),
         "contacts" if is_unknown => {
             "the motion is kept from the surface of a jump, or on it in the end; or it goes along \
-             a surface on one side of it"
+             a surface on one side of it, or is pushed onto a kink"
                 .into()
         }
         "replayed" | "objective" | "conditions" | "modes" if is_unknown => {

@@ -63,7 +63,11 @@ impl Model {
                 _ => None,
             })
         };
-        self.row_times(numbers, sum).into_iter().enumerate().map(term).sum()
+        let [before, behind] = sum.is_shared;
+        // A row between two phases belongs to the second.
+        let is_own = |time: f64| (!before || time >= first) && (!behind || time < last);
+        let rows = self.row_times(numbers, sum).into_iter().enumerate();
+        rows.filter(|it| is_own(it.1)).map(term).sum()
     }
 
     /// A value over parameters, unknowns and what else has a meaning.

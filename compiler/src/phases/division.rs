@@ -78,8 +78,11 @@ impl<'m> Division<'m> {
 
     /// The sums over rows: those before and behind the time of a phase belong to its neighbours.
     pub fn sums(&self, j: usize) -> Vec<Sum> {
-        let is_shared = [j > 0, j < self.last()];
-        self.model.sums.iter().map(|sum| Sum { is_shared, ..sum.clone() }).collect()
+        let shared = |sum: &Sum| {
+            let [before, behind] = sum.is_shared;
+            Sum { is_shared: [before || j > 0, behind || j < self.last()], ..sum.clone() }
+        };
+        self.model.sums.iter().map(shared).collect()
     }
 
     pub fn input_of_state(&self, state: usize) -> u32 {

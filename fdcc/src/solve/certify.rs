@@ -81,12 +81,13 @@ pub(super) fn size_of_objective(located: &Located, model: &Model) -> f64 {
 }
 
 /// How wrong the sign of the multiplier of a state or a path condition at its bound is; infinite
-/// where the motion is kept from a jump, or on one side of a surface that it is on.
+/// where the motion is kept from a jump, or on one side of a surface that it is on, or pushed onto a
+/// kink.
 fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
     let contacts = Contacts::new(model, located);
     let wrong = contacts.wrong_sign().map_or(0.0, |it| it.part.max(0.0));
     let is_kept = contacts.is_at_jump() || jumps_in_the_end(&located.structure);
-    let is_on_edge = || contacts.stays_on_a_surface();
+    let is_on_edge = || contacts.stays_on_a_surface() || contacts.is_pushed_onto_a_kink();
     if between.has_objective && (is_kept || is_on_edge()) { f64::INFINITY } else { wrong }
 }
 

@@ -20,6 +20,7 @@ mod hold_sensitivities;
 mod insertion;
 mod joint;
 mod jump_edges;
+mod kink_pushes;
 mod minimum;
 mod on_surfaces;
 mod orders;

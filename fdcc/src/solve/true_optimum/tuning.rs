@@ -133,6 +133,8 @@ pub(super) mod signs {
 }
 
 pub(super) mod repair {
+    /// The Hamiltonian of a phase counts as this part of that of all phases at least.
+    pub(crate) const NOTHING_OF_ALL: f64 = 1e-6;
     /// A shorter phase, for the whole time, has shrunk to nothing.
     pub(crate) const NOTHING: f64 = 1e-5;
 }
@@ -154,6 +156,11 @@ pub(super) mod across_surfaces {
     pub(crate) const NEAR: f64 = 1e-4;
     /// The motion ends on the surface of a jump where it is smaller than this, for its range.
     pub(crate) const ON_IT: f64 = 1e-6;
+}
+
+pub(super) mod kink_pushes {
+    /// A costate is continuous where it jumps by less than this part of its largest value.
+    pub(crate) const CONTINUOUS: f64 = 1e-3;
 }
 
 pub(super) mod insertion {

@@ -247,3 +247,15 @@ fn a_kink_that_is_a_reward_is_left() {
     assert!(solution.status().is_solved(), "{:?}", solution.status());
     assert!((solution.objective() + 2.0).abs() < 1e-3, "{}", solution.objective());
 }
+
+/// `|x - sin t|` of a double integrator: to come to the kink takes switches without end, of which
+/// five cost 0.5391189091 (closed forms of the arcs, minimised by SciPy). What comes to it at once, by
+/// an impulse of its multiplier, costs 0.53912658 and is no optimum.
+#[test]
+fn a_motion_that_is_pushed_onto_a_kink_is_no_optimum() {
+    let solution = solved(
+        "time t in [0, 8]  state x start 0  state v start 0  control u in [-1, 1]
+        dynamics { x' = v  v' = u }  minimize integral(abs(x - sin(t)))",
+    );
+    assert!(!solution.is_certified(), "{}", solution.objective());
+}

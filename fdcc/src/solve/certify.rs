@@ -81,8 +81,8 @@ pub(super) fn size_of_objective(located: &Located, model: &Model) -> f64 {
 }
 
 /// How wrong the sign of the multiplier of a state or a path condition at its bound is; infinite
-/// where the motion is kept from a jump, or on one side of a surface that it is on, or pushed onto a
-/// kink.
+/// where the motion is kept from a jump, or on one side of a surface that it is on, or pushed onto
+/// a kink.
 fn wrong_contact(between: &Problem, model: &Model, located: &Located) -> f64 {
     let contacts = Contacts::new(model, located);
     let wrong = contacts.wrong_sign().map_or(0.0, |it| it.part.max(0.0));

@@ -65,8 +65,11 @@ fn with_others(solution: &Solution, document: &Document) -> Vec<String> {
     solved.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let value = |it: &Sequence| document.units.value("objective", it.ended.objective, 9);
     let is_certified = solution.is_certified();
-    let better = |it: &Sequence| match is_certified && is_clearly_better(it, solution, document) {
-        true => ", better on its grid, and not certified",
+    let better = |it: &Sequence| match is_certified {
+        true if is_clearly_better(it, solution, document) => {
+            ", better on its grid, and not certified"
+        }
+        true => " on its grid",
         false => "",
     };
     let told = solved.iter().take(OTHERS);

@@ -1,10 +1,10 @@
 //! Kinks onto which a motion is pushed.
 //!
-//! That `e = 0` on a kink of `|e|` is no condition of the model: what it costs to leave it is bounded,
-//! by 1 for each unit of `e`, so that costates are continuous where the motion comes to it. A chain
-//! of phases has it as a condition, whose multiplier may be an impulse: then many short turns on the
-//! way there are better (A. T. Fuller, *Relay control systems optimized for various performance
-//! criteria*, 1960).
+//! That `e = 0` on a kink of `|e|` is no condition of the model: what it costs to leave it is
+//! bounded, by 1 for each unit of `e`, so that costates are continuous where the motion comes to
+//! it. A chain of phases has it as a condition, whose multiplier may be an impulse: then many short
+//! turns on the way there are better (A. T. Fuller, *Relay control systems optimized for various
+//! performance criteria*, 1960).
 
 use super::contacts::Contacts;
 use super::tuning::kink_pushes::CONTINUOUS;
@@ -20,8 +20,10 @@ impl Contacts<'_> {
     fn begins_on_kinks_alone(&self, j: usize) -> bool {
         let [before, after] = [j - 1, j].map(|it| &self.located.structure.phases[it]);
         let states = self.limits.iter().filter(|it| it.state.is_some()).count();
+        // Where controls act on a kink at once nothing is pushed.
         let is_kink_row = |limit: usize| {
-            limit.checked_sub(states).is_some_and(|at| is_kink(&self.model.path[at].place.name))
+            let row = limit.checked_sub(states).map(|at| &self.model.path[at].place.name);
+            row.is_some_and(|it| is_kink(it)) && self.limits[limit].order > Some(0)
         };
         let pairs = before.contacts.iter().zip(&after.contacts).enumerate();
         let changed: Vec<usize> = pairs.filter(|it| it.1.0 != it.1.1).map(|it| it.0).collect();

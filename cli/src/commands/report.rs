@@ -38,7 +38,7 @@ impl Report {
             self.solutions.iter().map(|path| Json::read(path)).collect::<Result<_, _>>()?;
         let names = names(&self.solutions);
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        files::write_file(&self.out, &page::page(&documents, &names))
+        files::write_file(&self.out, page::page(&documents, &names))
     }
 }
 

@@ -213,7 +213,7 @@ impl Sweep {
             model.meaning().params.iter().map(|it| it.place.name.clone()).collect();
         let (units, params) = (&units, params.as_slice());
         let page = page::Page { model: model.name(), source, units, params, rows, all };
-        files::write_file(&folder.join(format!("{}.html", journal.name())), &page.html())
+        files::write_file(&folder.join(format!("{}.html", journal.name())), page.html())
     }
 
     /// What is kept of the rows that ran.

@@ -187,10 +187,10 @@ impl Model {
             true => vec![&self.meaning],
             false => phases.collect(),
         };
-        let is_smooth = |it: &&fdcc_compiler::Model| it.surfaces.is_empty() && it.jumps.is_empty();
-        match all.iter().all(|it| is_smooth(it)) {
-            true => all.iter().any(|it| it.method.names_grid),
-            false => all.iter().any(|it| !is_smooth(it) && it.method.names_width()),
+        let switches = |it: &fdcc_compiler::Model| !it.surfaces.is_empty() || !it.jumps.is_empty();
+        match all.iter().any(|it| switches(it)) {
+            true => all.iter().any(|it| switches(it) && it.method.names_width()),
+            false => all.iter().any(|it| it.method.names_grid),
         }
     }
 

@@ -249,8 +249,8 @@ fn a_kink_that_is_a_reward_is_left() {
 }
 
 /// `|x - sin t|` of a double integrator: to come to the kink takes switches without end, of which
-/// five cost 0.5391189091 (closed forms of the arcs, minimised by SciPy). What comes to it at once, by
-/// an impulse of its multiplier, costs 0.53912658 and is no optimum.
+/// five cost 0.5391189091 (closed forms of the arcs, minimised by SciPy). What comes to it at
+/// once, by an impulse of its multiplier, costs 0.53912658 and is no optimum.
 #[test]
 fn a_motion_that_is_pushed_onto_a_kink_is_no_optimum() {
     let solution = solved(

@@ -10,7 +10,7 @@ use crate::expressions::graph::{ExprId, Graph};
 use crate::expressions::interval::{Interval, Tape};
 use crate::model::guess::straight_guesses;
 use crate::model::numbers::Numbers;
-use crate::model::{Jump, Model, Place, Symbol};
+use crate::model::{Jump, Model, Place, Range, State, Symbol};
 use fdcc_grammar::ast::Direction;
 
 /// Rounding, relative to what is rounded.
@@ -58,7 +58,8 @@ impl Beginning {
 /// directions each crossing is one of them.
 pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
     let mut graph = model.graph.clone();
-    let (widest, guessed) = (boxed(model, numbers), at_guess(model, numbers));
+    let widest = boxed(model, numbers, |it| it.start_range.unwrap_or(it.range));
+    let guessed = at_guess(model, numbers);
     let guesses = straight_guesses(model, &mut graph);
     let mut of = |jump: &Jump| {
         let psi = model.surfaces[jump.surface].psi;
@@ -108,8 +109,12 @@ fn is_below(value: f64) -> bool {
     value < -ROUNDING
 }
 
-/// What each input of the graph may be at the start.
-fn boxed(model: &Model, numbers: &Numbers) -> Vec<Interval> {
+/// What each input of the graph may be, with ranges of the states.
+pub(super) fn boxed(
+    model: &Model,
+    numbers: &Numbers,
+    range: impl Fn(&State) -> Range,
+) -> Vec<Interval> {
     let bounds = |range| {
         let bounds = numbers.bounds(model, range);
         Interval::new(bounds.lower, bounds.upper)
@@ -117,7 +122,9 @@ fn boxed(model: &Model, numbers: &Numbers) -> Vec<Interval> {
     let one = |symbol: &Symbol| match *symbol {
         Symbol::Param(_) => Interval::point(numbers.of(*symbol)),
         Symbol::Free(at) => bounds(model.frees[at].range),
-        Symbol::State(at) => bounds(model.states[at].start_range.unwrap_or(model.states[at].range)),
+        Symbol::State(at) => bounds(range(&model.states[at])),
+        Symbol::Control(at) => bounds(model.controls[at].range),
+        Symbol::Selector(_) => Interval::new(-1.0, 1.0),
         _ => Interval::ALL,
     };
     model.symbols.iter().map(one).collect()

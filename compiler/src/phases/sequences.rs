@@ -1,9 +1,9 @@
 //! Which jumps may happen, and in which order.
 
-use super::crossings::{Beginning, beginnings, height};
+use super::crossings::{Beginning, beginnings, boxed, height};
 use super::hold::{approach, rest};
 use crate::expressions::graph::Graph;
-use crate::expressions::interval::{Interval, Tape};
+use crate::expressions::interval::Tape;
 use crate::model::numbers::{Numbers, numbers};
 use crate::model::{Jump, Model, Symbol};
 use fdcc_grammar::Diagnostic;
@@ -111,28 +111,11 @@ fn crossed(model: &Model, numbers: &Numbers, graph: &mut Graph, jump: &Jump) -> 
         return None;
     }
     let approach = approach(model, graph, psi);
-    let rate = Tape::new(graph, &[approach]).evaluate(&anywhere(model, numbers))[0];
+    let rate = Tape::new(graph, &[approach]).evaluate(&boxed(model, numbers, |it| it.range))[0];
     let rate = height(jump.direction, rate);
     match () {
         () if rate.is_negative() => Some(1),
         () if rate.is_positive() => Some(0),
         () => None,
     }
-}
-
-/// What each input of the graph may be at any time.
-fn anywhere(model: &Model, numbers: &Numbers) -> Vec<Interval> {
-    let bounds = |range| {
-        let bounds = numbers.bounds(model, range);
-        Interval::new(bounds.lower, bounds.upper)
-    };
-    let one = |symbol: &Symbol| match *symbol {
-        Symbol::Param(_) => Interval::point(numbers.of(*symbol)),
-        Symbol::Free(at) => bounds(model.frees[at].range),
-        Symbol::State(at) => bounds(model.states[at].range),
-        Symbol::Control(at) => bounds(model.controls[at].range),
-        Symbol::Selector(_) => Interval::new(-1.0, 1.0),
-        _ => Interval::ALL,
-    };
-    model.symbols.iter().map(one).collect()
 }

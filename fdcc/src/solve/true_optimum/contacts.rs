@@ -6,7 +6,7 @@ use super::Located;
 use super::path_values::{path_values, slopes};
 use super::tracks::Track;
 use super::tuning::contacts::{
-    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN, STILL, TOUCHED,
+    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN, TOUCHED,
 };
 use super::tuning::structure::SHORTEST;
 use fdcc_compiler::{Arc, Limit, Mode, Model, PhaseOfModes, Switch, limits, may_hold};
@@ -291,15 +291,13 @@ impl<'l> Contacts<'l> {
                 self.extend(&mut range, j, self.row(j, limit));
             }
         }
-        let bounds = self.located.chain.phases[0].path_bounds[self.row(0, limit)];
-        let sizes = [bounds.lower, bounds.upper].into_iter().filter(|it| it.is_finite());
-        let of_bound = sizes.fold(0.0, |most: f64, it| most.max(OF_BOUND * it.abs()));
-        match self.limits[limit].order {
-            Some(0) => range.length().max(self.by_controls(limit)).max(of_bound),
-            // What hardly moves may be at its bound throughout.
-            _ if range.length() < STILL * of_bound => of_bound,
-            _ => range.length(),
+        if self.limits[limit].order == Some(0) {
+            let bounds = self.located.chain.phases[0].path_bounds[self.row(0, limit)];
+            let sizes = [bounds.lower, bounds.upper].into_iter().filter(|it| it.is_finite());
+            let least = range.length().max(self.by_controls(limit));
+            return sizes.fold(least, |most, it| most.max(OF_BOUND * it.abs()));
         }
+        range.length()
     }
 
     /// How far controls move a limit: where it is at its bound in all phases, though they differ.

@@ -105,7 +105,7 @@ impl Search<'_> {
 impl Located {
     /// That of the Hamiltonian, over all phases. Of a motion that rests throughout at no cost all
     /// its terms are rounding: there what is no more than the noise of the solver passes.
-    pub(super) fn hamiltonian_size(&self) -> f64 {
+    fn hamiltonian_size(&self) -> f64 {
         let all = self.outcome.phases.iter().map(|it| &it.trajectory.hamiltonian);
         let noise = all.clone().map(|it| it.noise).fold(f64::MIN_POSITIVE, f64::max);
         let least = if all.clone().all(|it| it.is_noise) { noise / GAIN } else { 0.0 };

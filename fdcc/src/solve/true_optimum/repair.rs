@@ -6,7 +6,7 @@ use super::path_values::slopes;
 use super::range::ranges;
 use super::structure::Structure;
 use super::tuning::certificate::{CONTACT, WRONG_SIGN};
-use super::tuning::repair::{NOTHING, NOTHING_OF_ALL};
+use super::tuning::repair::NOTHING;
 use fdcc_compiler::{Arc, Mode, Model, is_kink};
 use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solution::{ControlSlopes, control_slopes};
@@ -69,12 +69,10 @@ pub(crate) struct WrongArc {
 pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongArc> {
     let mut all = Vec::new();
     let ranges = ranges(&between.controls, &located.outcome.phases);
-    // In a phase of no consequence all slopes are rounding.
-    let least = NOTHING_OF_ALL * located.hamiltonian_size();
     for (j, phase) in located.structure.phases.iter().enumerate() {
         let (problem, outcome) = (&located.chain.phases[j], &located.outcome.phases[j]);
         let slopes = control_slopes(problem, outcome);
-        let size = outcome.trajectory.hamiltonian.scale.max(least);
+        let size = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
         for (control, arc) in phase.arcs.iter().enumerate() {
             let ControlSlopes { least, largest, terms } = slopes[control];
             let wrong = match arc {

@@ -111,9 +111,8 @@ pub(super) mod contacts {
     /// interval.
     pub(crate) const NEAR_BOUND: f64 = 0.02;
     /// A path condition on which controls act at once has this part of its bound as its range at
-    /// least; so has another limit that moves by less than a part of that.
+    /// least.
     pub(crate) const OF_BOUND: f64 = 0.1;
-    pub(crate) const STILL: f64 = 1e-2;
     /// It is at its bound where all of its values are nearer than this part of its range.
     pub(crate) const SEEN: f64 = 1e-7;
     /// A limit with two derivatives or more that is active on fewer intervals is touched.
@@ -133,8 +132,6 @@ pub(super) mod signs {
 }
 
 pub(super) mod repair {
-    /// The Hamiltonian of a phase counts as this part of that of all phases at least.
-    pub(crate) const NOTHING_OF_ALL: f64 = 1e-6;
     /// A shorter phase, for the whole time, has shrunk to nothing.
     pub(crate) const NOTHING: f64 = 1e-5;
 }

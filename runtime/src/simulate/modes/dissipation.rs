@@ -9,9 +9,12 @@
 use crate::simulate::tuning::modes::ROUNDING;
 use nalgebra::DMatrix;
 
-/// Whether `B` is of this kind.
+/// Whether `B` is of this kind, and each selector acts on its surface: what it acts on later, as in
+/// `x' = v`, `v' in -Sgn(x)`, is no friction.
 pub(super) fn is_maximal(b: &DMatrix<f64>) -> bool {
-    let Some(c) = columns(b) else { return false };
+    let Some(c) = columns(b).filter(|_| b.diagonal().min() > ROUNDING * b.amax()) else {
+        return false;
+    };
     let mut s = b.clone();
     s.column_iter_mut().zip(&c).for_each(|(mut column, c)| column /= *c);
     let size = s.amax();
@@ -52,6 +55,14 @@ mod tests {
     #[test]
     fn friction_of_bodies_on_each_other_is_maximal() {
         assert!(is_maximal(&bodies()));
+    }
+
+    #[test]
+    fn what_acts_later_is_not() {
+        assert!(!is_maximal(&DMatrix::zeros(1, 1)));
+        let mut late = bodies();
+        (late[(2, 2)], late[(2, 1)], late[(1, 2)]) = (0.0, 0.0, 0.0);
+        assert!(!is_maximal(&late));
     }
 
     #[test]

@@ -217,6 +217,27 @@ fn a_solution_with_phases_is_simulated() {
     }
 }
 
+/// A solution has its parameters, and the command line the last word.
+#[test]
+fn parameters_of_a_solution_drive_phases_unless_told_otherwise() {
+    let text = "model par\nparam k = 1
+phase a { time t in [0, 1]  state x start 1  dynamics { x' = -k } }
+phase b { time t in [1, 2]  state x  control u in [-9, 9]  dynamics { x' = u - k }
+  end x == 1  minimize integral(u^2) }
+link a -> b { same }";
+    let folder = folder("phases_params", &[("par.fdc", text.as_bytes())]);
+    fdcc(&folder, &["solve", "par.fdc", "--set", "k=2", "--out", ".", "--log", "none"], "");
+    let driven = ["simulate", "par.fdc", "--control", "par.sol.json", "--json"];
+    let end = |more: &[&str]| {
+        let found = json(&fdcc(&folder, &[&driven[..], more].concat(), ""));
+        found["phases"]["b"]["end"]["x"].as_f64().expect("a number")
+    };
+    // The control is 4 on average.
+    for (more, expected) in [(&[][..], 1.0), (&["--set", "k=0"], 5.0)] {
+        assert!((end(more) - expected).abs() < 1e-6, "{more:?}: {}", end(more));
+    }
+}
+
 /// A ball that falls from 1 with g = 2 lands at 1, and rises to 1/4 at 1.5 with e = 1/2; the next
 /// phase begins there.
 #[test]

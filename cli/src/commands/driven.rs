@@ -112,7 +112,8 @@ impl Driven {
         Ok((self.changes.apply(&adapted).map_err(Failure::Usage)?, driver))
     }
 
-    /// The changed model, and the solution that drives its phases.
+    /// The model with the parameters of the solution that drives its phases, changed; the command
+    /// line has the last word.
     pub fn in_phases(&self, model: &Model) -> Result<(Model, Option<Saved>), Failure> {
         if self.warm.is_some() {
             let what = "`--warm` needs a model of one piece; `--control` takes a .sol.json, too";
@@ -125,7 +126,13 @@ impl Driven {
             return Err(Failure::Usage(what.into()));
         }
         let saved = self.control.as_deref().map(Saved::read).transpose()?;
-        Ok((self.changes.apply(model).map_err(Failure::Usage)?, saved))
+        let params = saved.iter().flat_map(|it| it.record().params);
+        let params: Vec<(String, f64)> = params.map(|(name, it)| (name.to_owned(), it)).collect();
+        let adapted = model.changed(|meaning| {
+            meaning.restore_params(&params);
+            Ok::<(), Failure>(())
+        })?;
+        Ok((self.changes.apply(&adapted).map_err(Failure::Usage)?, saved))
     }
 
     /// The controls for a system. What is odd about them is said on the standard error.

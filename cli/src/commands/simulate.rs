@@ -56,7 +56,9 @@ impl Simulate {
             return Err(Failure::Usage(what.into()));
         }
         let (model, saved) = self.driven.in_phases(model)?;
-        let record = saved.as_ref().map(Saved::record);
+        let mut record = saved.as_ref().map(Saved::record);
+        // The model has them, or others.
+        record.iter_mut().flat_map(|it| &mut it.phases).for_each(|it| it.params.clear());
         let simulated = model.simulate_phases(record.as_ref(), &self.driven.options(&model))?;
         let exit = if simulated.is_complete() { Exit::Fine } else { Exit::NotSolved };
         Ok((Text::of_phases(&PhasesDocument::new(&simulated, &model)), exit))

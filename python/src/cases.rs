@@ -66,13 +66,20 @@ impl Cases {
             case.compile()?;
         }
         let compiling = seconds();
-        let stop = || match how.time_limit {
-            Some(limit) if seconds() >= limit => ControlFlow::Break(Stop::TimeLimit),
-            _ => watch.check(),
+        let limited = |from: f64| {
+            move || match how.time_limit {
+                Some(limit) if seconds() - from >= limit => ControlFlow::Break(Stop::TimeLimit),
+                _ => watch.check(),
+            }
         };
         let (starts, executor) = (how.starts, Executor::serial());
+        // What all cases share has as much time as one of them.
+        let stop = limited(compiling);
+        case.prepare(&Options { starts, executor, stop: &stop, ..Options::default() });
+        let before = seconds();
+        let stop = limited(before);
         let options = Options { starts, executor, stop: &stop, ..Options::default() };
         let found = case.solve(&options)?;
-        Ok(fdcc_cli::row(&found, [compiling, seconds() - compiling], how.gap))
+        Ok(fdcc_cli::row(&found, [compiling, seconds() - before], how.gap))
     }
 }

@@ -413,3 +413,36 @@ fn an_active_inequality_counts_as_an_equation() {
     let [a, b] = [&equal, &active].map(|it| it.unknowns[0].standard_error.expect("it has one"));
     assert!((a / b - 1.0).abs() < 1e-4, "{a} {b}");
 }
+
+/// Michaelis and Menten: `Vm t = S0 - S + Km log(S0/S)`, without an error. From signals that are
+/// guessed apart from each other a grid allows a trajectory with `Km` at its bound; from the motion
+/// of the guess the data lead to what they were made with.
+#[test]
+fn a_fit_without_controls_also_begins_where_the_guess_leads_to() {
+    let (rate, half) = (0.8, 0.6);
+    let table = move |start: f64, last: f64| {
+        let row = |k: i32| {
+            let left = start * (last / start).powf(f64::from(k) / 20.0);
+            let time = (start - left + half * (start / left).ln()) / rate;
+            format!("{time},{left}\n")
+        };
+        format!("t,S\n{}", (1..=20).map(row).collect::<String>())
+    };
+    let files = DataFiles::from(move |name: &str| {
+        Ok(if name == "low.csv" { table(1.0, 0.01) } else { table(5.0, 0.01) })
+    });
+    let text = "data low = csv(\"low.csv\") columns t, S
+        data high = csv(\"high.csv\") columns t, S
+        free Vm in [0.1, 10] guess 1
+        free Km in [0.05, 10] guess 1
+        phase a { time t in [0, 6]  state S start 1  dynamics { S' = -Vm*S/(Km + S) }
+            fit low: S sd 0.02 }
+        phase b { time t in [0, 12]  state S start 5  dynamics { S' = -Vm*S/(Km + S) }
+            fit high: S sd 0.02 }";
+    let checked = fdcc::check_with("a test", text.into(), Some(files));
+    let model = checked.model.unwrap_or_else(|| panic!("{:#?}", checked.diagnostics));
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    let found: Vec<f64> = solution.unknowns().map(|it| it.1).collect();
+    assert!(solution.is_solved() && solution.objective() < 1e-6, "{:?}", solution.objective());
+    assert!((found[0] - rate).abs() < 1e-5 && (found[1] - half).abs() < 1e-5, "{found:?}");
+}

@@ -93,3 +93,29 @@ fn a_brake_before_and_after_a_coast() {
         0.5 + 0.01 * squares,
     );
 }
+
+/// Legs that have nothing to do with each other: the sum of what each of them costs alone. While
+/// the one is mended, the other still has phases that shrank to nothing.
+#[test]
+fn two_legs_with_regenerative_brakes() {
+    let leg = |[from, to]: [f64; 2], distance: f64| {
+        format!(
+            "time t in [{from}, {to}]  state x start 0  state v start 0  control u in [-1, 1]
+             dynamics {{ x' = v  v' = u - 0.05 - 0.02*v^2 }}  end x == {distance}  end v == 0
+             minimize integral(max(u*v, 0.6*u*v))"
+        )
+    };
+    let [first, second] = [leg([0.0, 5.0], 4.5), leg([5.0, 9.0], 2.5)];
+    let alone = |text: &str| solved_as_it_is(text).objective();
+    let together = format!("phase one {{ {first} }}\nphase two {{ {second} }}");
+    solved(&together, alone(&first) + alone(&second));
+}
+
+/// Certified.
+#[track_caller]
+fn solved_as_it_is(text: &str) -> Solution {
+    let model = Model::from_text("one", text).expect("it is right");
+    let solution = model.solve(&Options::default()).expect("it can be solved");
+    assert!(solution.is_certified(), "{:?}", solution.status());
+    solution
+}

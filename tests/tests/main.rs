@@ -72,6 +72,7 @@ mod stages;
 mod statuses;
 mod stepping;
 mod stiff;
+mod stopped;
 mod sweep;
 mod syntax;
 mod table;

@@ -273,11 +273,12 @@ impl Sweep {
             return Ok(None);
         }
         let begin = Instant::now();
-        let deadline = Deadline::after(begin, self.options.time_limit);
+        // What all rows share has as much time as one of them.
+        let shared = Deadline::after(begin, self.options.time_limit);
         let case = run.cases.case(&run.grid.values(row))?;
         if !case.is_compiled() {
             let case = case.clone();
-            match deadline.within(move || case.compile()) {
+            match shared.within(move || case.compile()) {
                 Err(Stop::Interrupted) => return Ok(None),
                 compiled => compiled.map_err(Failure::Stopped)??,
             }
@@ -295,9 +296,15 @@ impl Sweep {
             starts: self.options.starts as usize,
             start,
             report: &|report| log.report(report),
-            stop: &|| deadline.check(),
+            stop: &|| shared.check(),
             ..fdcc::Options::default()
         };
+        if !self.is_continued {
+            case.prepare(&options);
+        }
+        let before = begin.elapsed().as_secs_f64();
+        let deadline = Deadline::after(Instant::now(), self.options.time_limit);
+        let options = fdcc::Options { stop: &|| deadline.check(), ..options };
         // Without a row before it the first one of a continued sweep begins at the guess.
         let solution = match self.is_continued {
             true => case.model().solve(&options),
@@ -305,7 +312,8 @@ impl Sweep {
         };
         let solution = solution.map_err(|error| wrong_start(error, &self.options))?;
         let total = begin.elapsed().as_secs_f64();
-        let document = document(&solution, Seconds { compile, solve: total - compile, total });
+        let seconds = Seconds { compile, solve: total - before, total };
+        let document = document(&solution, seconds);
         let mut solved = Solved { solution, document };
         if self.confirmed && solved.is_good() {
             let gap = self.gap.of(&solved.solution.problem.method);

@@ -115,7 +115,8 @@ impl Certificate {
 
     /// What may help where it is not certified.
     pub fn advice(&self) -> Option<&'static str> {
-        (!self.certified).then_some(match self.is_smooth {
+        let is_stopped = self.checks.iter().any(|it| it.check == "finished");
+        (!self.certified && !is_stopped).then_some(match self.is_smooth {
             true => {
                 "       try another guess, or --starts 8; --method N=... asks for the problem on \
                  so many intervals alone"

@@ -162,7 +162,7 @@ fn how(solved: &Solved) -> String {
         return certificate.headline(found, problem.has_objective, solution.jumps.len());
     }
     let status = &outcome.solution.status;
-    let of = if has_surfaces(document) { "smoothed problem" } else { "discretised problem" };
+    let of = first_solved(document);
     let uncertified = if document.certificate.is_some() { "NOT CERTIFIED, " } else { "" };
     let tolerance = format!("tolerance {:e}", document.method.tol);
     let proof = if document.global || !problem.has_objective { "" } else { "; not proved global" };
@@ -272,6 +272,20 @@ fn replayed(document: &Document) -> Option<String> {
     Some(words.join("   ").replacen(":   ", ": ", 1))
 }
 
+/// What there is where a solve was stopped.
+fn this_is(solved: &Solved) -> String {
+    match solved.solution.certificate {
+        // The search for an optimum of the true system begins at a solved problem.
+        Some(_) => format!("this is the answer to the {}", first_solved(&solved.document)),
+        None => "this is the last iterate".into(),
+    }
+}
+
+/// What is solved before anything is located.
+fn first_solved(document: &Document) -> &'static str {
+    if has_surfaces(document) { "smoothed problem" } else { "discretised problem" }
+}
+
 fn intervals(solved: &Solved) -> String {
     plural(solved.solution.problem.method.intervals(), "interval")
 }
@@ -293,8 +307,8 @@ fn why(solved: &Solved) -> String {
         Status::IterationLimit => {
             format!("{}; `--method max_iter=...` allows more", plural(method.max_iter, "iteration"))
         }
-        Status::TimeLimit => "the time of `--time-limit` is up; this is the last iterate".into(),
-        Status::Interrupted => "stopped by Ctrl-C; this is the last iterate".into(),
+        Status::TimeLimit => format!("the time of `--time-limit` is up; {}", this_is(solved)),
+        Status::Interrupted => format!("stopped by Ctrl-C; {}", this_is(solved)),
         Status::NotFinite(_) => "an expression of the model has no value".into(),
         Status::NumericalFailure if solved.solution.outcome.solution.is_saddle => {
             "a saddle: stationary, but no minimum, and no step leads on; another `guess` or \

@@ -127,6 +127,18 @@ impl Case {
         Ok(())
     }
 
+    /// Solves what cases with the same keys begin at, if none of them did: what its search may cost
+    /// is not that of a case.
+    pub fn prepare(&self, options: &Options) {
+        if self.begins_at_base(options) {
+            self.variant.base(options);
+        }
+    }
+
+    fn begins_at_base(&self, options: &Options) -> bool {
+        self.has_params && matches!(options.start, Start::Guess)
+    }
+
     /// Solves, from the base unless the options name a start; from the guess where nothing is found
     /// from there, or where there is no other parameter.
     ///
@@ -135,7 +147,7 @@ impl Case {
     /// Those of [`Model::solve`].
     pub fn solve(&self, options: &Options) -> Result<Solution, Error> {
         let compiled = self.model.compile()?;
-        let is_free = self.has_params && matches!(options.start, Start::Guess);
+        let is_free = self.begins_at_base(options);
         let base = if is_free { self.variant.base(options) } else { None };
         let Some(base) = base else { return compiled.solve(options) };
         let found = compiled.solve(&Options { start: Start::Solution(base), ..*options })?;

@@ -28,12 +28,7 @@ pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Soluti
     let mut search = Search { model, between: &between, found: &found, options, spent };
     match search.certified() {
         Ok(answer) => answer,
-        Err(certificate) => {
-            let is_solved = found.outcome.solution.status.is_solved();
-            let mut smoothed = Solution::new(model.clone(), found);
-            smoothed.certificate = is_solved.then_some(certificate);
-            smoothed
-        }
+        Err(certificate) => Solution::new(model.clone(), found).missed(certificate, options),
     }
 }
 
@@ -158,12 +153,8 @@ impl Search<'_> {
 
     /// Where no structure could be solved.
     fn nothing(&self) -> Certificate {
-        let missing = match () {
-            () if (self.options.stop)().is_break() => "finished",
-            () if !self.between.are_sums_terms() => "without data",
-            () => "located",
-        };
-        Certificate::nothing_located(missing)
+        let is_told = self.between.are_sums_terms();
+        Certificate::nothing_located(if is_told { "located" } else { "without data" })
     }
 }
 

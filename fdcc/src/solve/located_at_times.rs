@@ -4,7 +4,6 @@
 use super::found::{Found, FoundChain, Phases};
 use super::located::grid;
 use super::report::Options;
-use super::true_optimum::Certificate;
 use super::{Solution, located_in_phases};
 use crate::model::Model;
 use fdcc_runtime::problem::{Method, Problem};
@@ -22,11 +21,14 @@ pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Soluti
     let starts = found.starts.clone();
     let in_phases = FoundChain { chain, outcome, step_errors: None, starts, others: Vec::new() };
     let mut answer = located_in_phases::solution(&model.with_meaning(divided), in_phases, options);
-    let certificate = answer.certificate.take().map(|it| it.of_whole(&names));
-    let is_certified = certificate.as_ref().is_some_and(Certificate::is_certified);
-    let whole = if is_certified { whole(found, answer) } else { found };
-    let mut solution = Solution::new(model.clone(), whole);
-    solution.certificate = certificate;
+    let Some(certificate) = answer.certificate.take().map(|it| it.of_whole(&names)) else {
+        return Solution::new(model.clone(), found);
+    };
+    if !certificate.is_certified() {
+        return Solution::new(model.clone(), found).missed(certificate, options);
+    }
+    let mut solution = Solution::new(model.clone(), whole(found, answer));
+    solution.certificate = Some(certificate);
     solution
 }
 

@@ -8,8 +8,8 @@ use super::kink_gaps::is_tight;
 use super::located::{grid, may_be_near, most_halvings};
 use super::report::Options;
 use super::true_optimum::{
-    Certificate, Check, Contacts, Located, Part, Spent, Whole, halved_in_phases, locate_in_phases,
-    polished_in_phases,
+    Certificate, Check, Contacts, First, Located, Part, Spent, Whole, halved_in_phases,
+    locate_in_phases, polished_in_phases,
 };
 use crate::model::Model;
 use crate::verification::{LinkGap, Verification};
@@ -32,10 +32,7 @@ pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> S
     match search.certified() {
         Ok(answer) => answer,
         Err(certificate) => {
-            let is_solved = found.is_solved();
-            let mut smoothed = Solution::of_phases(model.clone(), found);
-            smoothed.certificate = is_solved.then_some(certificate);
-            smoothed
+            Solution::of_phases(model.clone(), found).missed(certificate, options)
         }
     }
 }
@@ -51,10 +48,16 @@ struct Search<'s> {
 impl Search<'_> {
     /// The answer that is certified, or the certificate that fails least.
     fn certified(&self) -> Result<Solution, Certificate> {
+        self.certified_from(First::Controls)
+            .or_else(|one| self.certified_from(First::Contacts).map_err(|other| one.least(other)))
+    }
+
+    fn certified_from(&self, first: First) -> Result<Solution, Certificate> {
         let (whole, stop) = (self.model.meaning(), self.options.stop);
         let mut spent = Spent::default();
         let smoothed: Vec<Whole> = self.found.outcome.phases.iter().map(smoothed).collect();
-        let located = locate_in_phases(whole, self.parts, &smoothed, stop, &mut spent);
+        let from = (&smoothed[..], first);
+        let located = locate_in_phases(whole, self.parts, from, stop, &mut spent);
         let Some(mut located) = located else { return Err(self.nothing()) };
         let mut answer = self.answer(&located);
         while let Some(most) = most_halvings(&answer) {
@@ -92,8 +95,7 @@ impl Search<'_> {
 
     /// Where no structure could be solved.
     fn nothing(&self) -> Certificate {
-        let is_stopped = (self.options.stop)().is_break();
-        Certificate::nothing_located(if is_stopped { "finished" } else { "located" })
+        Certificate::nothing_located("located")
     }
 
     /// All phases in the words of the model, with what is checked of them.

@@ -23,6 +23,7 @@ mod reach;
 mod report;
 mod sequences;
 mod shown;
+mod simulated_start;
 mod solution;
 mod sweep;
 mod timing;
@@ -193,7 +194,12 @@ impl Compiled {
             Start::Solution(it) => Some(it.as_start(&self.chain)),
             Start::Later(it) => Some(it.as_later_start(&self.chain)),
         };
+        let is_guessed = start.is_none();
         let mut found = multistart::solve(&self.chain, start, options, Part::default())?;
+        let motion = is_guessed.then(|| simulated_start::start(&self.model, &self.chain)).flatten();
+        if let Some(motion) = motion {
+            found = multistart::also_from(found, motion, options)?;
+        }
         Ok(match meaning.phases.is_empty() {
             true => {
                 let others = found.other_singles();

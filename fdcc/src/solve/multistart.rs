@@ -42,6 +42,19 @@ pub(super) fn solve(
     Ok(FoundChain { chain, outcome, step_errors: error, starts, others })
 }
 
+/// The better one of an answer and of what is found from another start.
+pub(super) fn also_from(
+    found: FoundChain,
+    start: nlp::Start,
+    options: &Options,
+) -> Result<FoundChain, Error> {
+    let FoundChain { chain, outcome, step_errors, starts, others } = found;
+    let first = Refined { chain, outcome, error: step_errors };
+    let other = run(&first.chain, Some(start), options, Part::default())?;
+    let Refined { chain, outcome, error } = better(first, other);
+    Ok(FoundChain { chain, outcome, step_errors: error, starts, others })
+}
+
 /// The best answer, then others that are solved, of those with the same objective one.
 fn distinct(mut all: Vec<Refined>) -> Vec<Refined> {
     all.sort_by(|a, b| match (&a.outcome.solution, &b.outcome.solution) {

@@ -3,7 +3,7 @@
 use super::families::Family;
 use super::found::{Found, Jump, Phases, Sequence};
 use super::phases::Whole;
-use super::report::Ended;
+use super::report::{Ended, Options};
 use super::true_optimum::Certificate;
 use super::tuning::search::INFEASIBLE;
 use crate::error::Error;
@@ -19,6 +19,7 @@ use fdcc_runtime::problem::{Chain, Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
 use fdcc_runtime::solve::warm_start::{again, one_interval_later};
 use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
+use std::ops::ControlFlow;
 
 /// A solution, or the best iterate where there is none; numbers are in SI.
 ///
@@ -96,6 +97,21 @@ impl Solution {
             parts: Vec::new(),
             whole: None,
         }
+    }
+
+    /// The answer to the smoothed problem where no optimum of the true system is certified: stopped
+    /// where the search for one was stopped.
+    pub(super) fn missed(self, certificate: Certificate, options: &Options) -> Self {
+        if !self.status().is_solved() {
+            return self;
+        }
+        let ControlFlow::Break(stop) = (options.stop)() else {
+            return Solution { certificate: Some(certificate), ..self };
+        };
+        let mut stopped = self;
+        stopped.outcome.solution.status = stop.into();
+        stopped.certificate = Some(Certificate::nothing_located("finished"));
+        stopped
     }
 
     /// The same answer in the words of another model.

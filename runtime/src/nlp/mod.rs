@@ -152,6 +152,15 @@ pub enum Stop {
     Interrupted,
 }
 
+impl From<Stop> for Status {
+    fn from(stop: Stop) -> Self {
+        match stop {
+            Stop::TimeLimit => Status::TimeLimit,
+            Stop::Interrupted => Status::Interrupted,
+        }
+    }
+}
+
 /// One line of the iteration table.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {

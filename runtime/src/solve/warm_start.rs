@@ -101,6 +101,11 @@ impl Earlier {
     }
 }
 
+/// The same without multipliers: a trajectory that is no solution.
+pub fn from_trajectories(chain: &Chain, earlier: &[Earlier]) -> Start {
+    Start { v: resample(chain, earlier), warm: None }
+}
+
 /// The earlier solutions of all phases as a warm start on the grids of the chain. Its multipliers
 /// are estimated, with the widths of its layers where the problem names none.
 pub fn from_earlier(chain: &Chain, earlier: &[Earlier]) -> Start {

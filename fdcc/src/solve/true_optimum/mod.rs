@@ -21,6 +21,7 @@ mod insertion;
 mod joint;
 mod jump_edges;
 mod kink_pushes;
+mod mending;
 mod minimum;
 mod on_surfaces;
 mod orders;
@@ -31,6 +32,7 @@ mod polish;
 mod polynomials;
 mod pressed;
 mod range;
+mod refining;
 mod repair;
 mod replayed;
 mod signs;
@@ -45,6 +47,7 @@ pub(crate) use answer::Whole;
 pub use certificate::{Certificate, Check, Stretch, Switch};
 pub(crate) use contacts::Contacts;
 pub(crate) use joint::{Joint, Part};
+pub(crate) use mending::First;
 pub(crate) use parts::{halved_in_phases, locate_in_phases, polished_in_phases};
 pub(crate) use polynomials::beyond_bounds;
 pub(crate) use range::{Range, ranges};
@@ -53,17 +56,17 @@ pub(crate) use replayed::replayed;
 pub(crate) use structure::variation;
 pub(crate) use tuning::certificate as certificate_limits;
 
-use fdcc_compiler::{Model, PhaseOfModes, limits};
+use fdcc_compiler::{Model, limits};
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::{Chain, Problem};
-use fdcc_runtime::solve::{ChainOutcome, Outcome};
+use fdcc_runtime::solve::ChainOutcome;
 use insertion::Candidate;
 use joint::{Among, is_nearly_stationary, is_stationary};
 use std::ops::ControlFlow;
 use std::sync::Arc;
-use structure::{NewArcs, Structure};
+use structure::Structure;
 use tuning::certificate::WORTH;
-use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, SMOOTHER, WORSE};
+use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, WORSE};
 
 /// A structure with its optimum.
 #[derive(Clone)]
@@ -107,6 +110,7 @@ struct Search<'s> {
     problem: &'s Problem,
     /// The model with phases of which it is one.
     among: Option<Among<'s>>,
+    first: First,
     stop: &'s (dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &'s mut Spent,
 }
@@ -128,7 +132,8 @@ pub(crate) fn locate(
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
-    let mut search = Search { written, model, problem, among: None, stop, spent };
+    let mut search =
+        Search { written, model, problem, among: None, first: First::Controls, stop, spent };
     let structure = Structure::of(problem, smoothed, limits(model).len());
     let first = search.repaired(structure, smoothed)?;
     let mut held = search.with_holds(first);
@@ -148,7 +153,8 @@ pub(crate) fn on_half_intervals(
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
-    let mut search = Search { written, model, problem, among: None, stop, spent };
+    let mut search =
+        Search { written, model, problem, among: None, first: First::Controls, stop, spent };
     let finer = search.solve(located.structure.halved(most)?, &search.whole(located))?;
     let mut finer = Located { insertion: located.insertion, ..finer };
     search.compared(&mut finer);
@@ -164,7 +170,8 @@ pub(crate) fn polished(
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
-    Search { written, model, problem, among: None, stop, spent }.polished(located)
+    Search { written, model, problem, among: None, first: First::Controls, stop, spent }
+        .polished(located)
 }
 
 impl Search<'_> {
@@ -172,39 +179,6 @@ impl Search<'_> {
     fn repaired(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
         let located = self.first_solved(structure, from)?;
         self.mended(located)
-    }
-
-    /// Mends the structure until nothing new can be tried; what cannot be solved is passed over.
-    fn mended(&mut self, mut located: Located) -> Option<Located> {
-        let mut passed = std::mem::take(&mut located.others);
-        let mut tried = vec![located.structure.phases.clone()];
-        while let Some(structure) = self.other(&located, &tried) {
-            tried.push(structure.phases.clone());
-            let whole = self.whole(&located);
-            let may_rise = structure.conditions() > located.structure.conditions()
-                || structure.fineness() > located.structure.fineness();
-            let is_cut = structure.cuts() > located.structure.cuts();
-            let better = self.solve(structure, &whole);
-            let is_kept = |it: &Located| match is_cut {
-                true => !it.is_worse(&located) && self.is_smoother(it, &located),
-                false => may_rise || !it.is_worse(&located),
-            };
-            if let Some(better) = better.filter(is_kept) {
-                passed.push(std::mem::replace(&mut located, better));
-            }
-        }
-        self.turned_back(&mut located, &mut passed);
-        located.others = passed;
-        Some(located)
-    }
-
-    /// A phase that shrank to nothing may have been tried from what there is without it.
-    fn turned_back(&self, located: &mut Located, passed: &mut Vec<Located>) {
-        let Some(asked) = repair::better(self.model, self.problem, located) else { return };
-        if let Some(at) = passed.iter().rposition(|it| it.structure.phases == asked.phases) {
-            let last = std::mem::replace(located, passed.remove(at));
-            passed.push(last);
-        }
     }
 
     /// What was passed by on the way, ready to be certified. Where surfaces may be held these are
@@ -218,40 +192,6 @@ impl Search<'_> {
             it
         });
         ready.collect()
-    }
-
-    /// What a located answer asks for, and was not tried: a repair, then new arcs and touch points,
-    /// then the latter alone, then that a surface is not touched.
-    fn other(&self, located: &Located, tried: &[Vec<PhaseOfModes>]) -> Option<Structure> {
-        let contacts = Contacts::new(self.model, located);
-        let (own, phases) = (&located.structure, &located.outcome.phases);
-        let repaired = repair::better(self.model, self.problem, located).into_iter();
-        let arcs = |which| own.with_arcs(Some((self.problem, which)), &contacts, phases);
-        let new = [arcs(NewArcs::All), arcs(NewArcs::Longest)].into_iter();
-        let new = new.chain([own.with_arcs(None, &contacts, phases)]);
-        let all = repaired
-            .chain(new.flat_map(|it| [it.without_overlaps(), it]))
-            .chain(repair::without_touches(own))
-            .chain(self.cuts(located, &contacts));
-        let mut all = all.map(|it| it.without_idle_touches(&contacts.limits));
-        all.find(|it| !tried.contains(&it.phases))
-    }
-
-    /// The structures in which controls may jump inside of a phase: where they are at a limit that
-    /// reads several of them, such as a disc, they may go from one end of it to the other.
-    fn cuts(&self, located: &Located, contacts: &Contacts) -> Vec<Structure> {
-        let own = &located.structure;
-        let ranges = ranges(&self.problem.controls, &located.outcome.phases);
-        let is_at_limit = |phase: &PhaseOfModes| {
-            let limits = contacts.limits.iter().zip(&phase.contacts);
-            limits.into_iter().any(|it| it.0.order == Some(0) && *it.1 != fdcc_compiler::Arc::Free)
-        };
-        let phases = own.phases.iter().zip(&located.outcome.phases).enumerate();
-        let limited = phases.filter(|(_, (phase, _))| is_at_limit(phase));
-        let cut = |(j, (_, outcome)): (usize, (&PhaseOfModes, &Outcome))| {
-            Some(own.with_cut(j, polynomials::jump(&ranges, &outcome.trajectory)?))
-        };
-        limited.filter_map(cut).collect()
     }
 
     /// Solves; where that fails, without arcs on holds, and then without ever longer phases: what a
@@ -286,61 +226,6 @@ impl Search<'_> {
             }
         }
         located
-    }
-
-    /// With shorter intervals where the Hamiltonian is not what it should be.
-    fn refined(&mut self, mut located: Located) -> Located {
-        loop {
-            let structure = located.structure.finer(self.problem, &located.outcome.phases);
-            if structure.phases == located.structure.phases {
-                return located;
-            }
-            let whole = self.whole(&located);
-            match self.solve(structure, &whole) {
-                Some(finer) => {
-                    let insertion = located.insertion;
-                    let finer = self.mended(finer).expect("it is solved");
-                    located = Located { insertion, ..finer };
-                }
-                None => return located,
-            }
-        }
-    }
-
-    /// With graded intervals where controls are steep, as long as that helps.
-    fn followed(&mut self, mut even: Located) -> Located {
-        let mut losses = self.compared(&mut even);
-        let (mut best, mut located) = (even.clone(), even.clone());
-        while let Some(finer) = self.graded(&located, &losses) {
-            located = Located { insertion: even.insertion, ..finer };
-            losses = self.compared(&mut located);
-            let is_as_smooth = self.roughness(&located) <= self.roughness(&best);
-            if located.loss < best.loss && is_as_smooth {
-                best = located.clone();
-                best.others = vec![even.clone()];
-            }
-        }
-        best
-    }
-
-    /// On graded and shorter intervals where something is lost; nothing where all are.
-    fn graded(&mut self, located: &Located, losses: &[f64]) -> Option<Located> {
-        let structure = located.structure.finer(self.problem, &located.outcome.phases);
-        let structure = structure.graded(losses);
-        let is_new = structure.phases != located.structure.phases;
-        if is_new { self.solve(structure, &self.whole(located)) } else { None }
-    }
-
-    /// Whether one answer is far more accurate than another, which is not as accurate as it should
-    /// be.
-    fn is_smoother(&self, one: &Located, other: &Located) -> bool {
-        self.roughness(one) < SMOOTHER * self.roughness(other)
-    }
-
-    /// By how much trajectories are less accurate than they should be; 1 where they just are.
-    fn roughness(&self, located: &Located) -> f64 {
-        let all = located.structure.roughness(self.problem, &located.outcome.phases);
-        all.into_iter().fold(1.0, f64::max)
     }
 
     fn held(&mut self, located: &Located, candidate: &Candidate) -> Trial {
@@ -378,8 +263,8 @@ impl Located {
     /// What the terms of the Hamiltonian add up to over time.
     pub fn objective_size(&self) -> f64 {
         let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
-        let [first, last] = self.structure.ends();
-        sizes.fold(0.0, f64::max) * (last - first)
+        let durations = self.structure.times.windows(2).map(|pair| pair[1] - pair[0]);
+        sizes.zip(durations).map(|(size, duration)| size * duration.max(0.0)).sum()
     }
 
     /// When phases begin; and the last time.

@@ -9,9 +9,10 @@
 //! ```
 
 use super::joint::{Among, Part};
+use super::repair;
 use super::structure::Structure;
 use super::tuning::search::MOST_ROUNDS;
-use super::{Located, Search, Spent, Whole};
+use super::{First, Located, Search, Spent, Whole};
 use fdcc_compiler::{Model, limits};
 use fdcc_runtime::nlp::Stop;
 use std::ops::ControlFlow;
@@ -24,14 +25,15 @@ type Watch<'s> = &'s (dyn Fn() -> ControlFlow<Stop> + Sync);
 pub(crate) fn locate_in_phases(
     whole: &Model,
     parts: &[Part],
-    smoothed: &[Whole],
+    (smoothed, first): (&[Whole], First),
     stop: Watch,
     spent: &mut Spent,
 ) -> Option<Vec<Located>> {
-    let mut phases = Phases { whole, parts, stop, spent };
+    let mut phases = Phases { whole, parts, first, stop, spent };
     let mut all = phases.first_solved(smoothed)?;
     for _ in 0..MOST_ROUNDS {
         let before = Arc::clone(&all[0].joint);
+        all = phases.without_nothing(all);
         for own in 0..parts.len() {
             all = phases.mended(all, own)?;
         }
@@ -52,15 +54,12 @@ pub(crate) fn halved_in_phases(
     stop: Watch,
     spent: &mut Spent,
 ) -> Option<Vec<Located>> {
-    let mut phases = Phases { whole, parts, stop, spent };
+    let mut phases = Phases { whole, parts, first: First::Controls, stop, spent };
     let halved: Vec<Structure> =
         all.iter().map(|it| it.structure.halved(most)).collect::<Option<_>>()?;
     let insertions: Vec<f64> = all.iter().map(|it| it.insertion).collect();
-    let mut search = phases.search(0);
-    let mut from = search.whole(&seen_from(all, 0));
-    from.beside.iter_mut().zip(&halved[1..]).for_each(|(it, own)| it.0.clone_from(own));
-    let finer = search.solve(halved[0].clone(), &from)?;
-    Some(phases.compared(in_order(finer, 0), insertions))
+    let finer = phases.solved_with(halved, &all)?;
+    Some(phases.compared(finer, insertions))
 }
 
 /// The same optimum with more of its digits; nothing where there are none.
@@ -71,7 +70,7 @@ pub(crate) fn polished_in_phases(
     stop: Watch,
     spent: &mut Spent,
 ) -> Option<Vec<Located>> {
-    let mut phases = Phases { whole, parts, stop, spent };
+    let mut phases = Phases { whole, parts, first: First::Controls, stop, spent };
     let insertions: Vec<f64> = all.iter().map(|it| it.insertion).collect();
     let polished = phases.search(0).polished(&seen_from(all, 0))?;
     Some(phases.compared(in_order(polished, 0), insertions))
@@ -80,6 +79,7 @@ pub(crate) fn polished_in_phases(
 struct Phases<'s> {
     whole: &'s Model,
     parts: &'s [Part<'s>],
+    first: First,
     stop: Watch<'s>,
     spent: &'s mut Spent,
 }
@@ -92,6 +92,7 @@ impl Phases<'_> {
             model,
             problem,
             among: Some(Among { whole: self.whole, parts: self.parts, own }),
+            first: self.first,
             stop: self.stop,
             spent: self.spent,
         }
@@ -124,6 +125,35 @@ impl Phases<'_> {
             let from = beside_others(&all, smoothed, 0);
             Some(in_order(self.search(0).solve(all[0].clone(), &from)?, 0))
         })
+    }
+
+    /// Without what has shrunk to nothing in any of the phases: what its controls do there is not
+    /// determined, and their sizes say nothing to the others.
+    fn without_nothing(&mut self, mut all: Vec<Located>) -> Vec<Located> {
+        loop {
+            let fewer: Vec<_> =
+                all.iter().map(|it| repair::without_nothing(&it.structure)).collect();
+            if fewer.iter().all(Option::is_none) {
+                return all;
+            }
+            let own = all.iter().map(|it| it.structure.clone());
+            let fewer: Vec<Structure> =
+                fewer.into_iter().zip(own).map(|(fewer, own)| fewer.unwrap_or(own)).collect();
+            let better = self.solved_with(fewer, &all);
+            match better.filter(|it| !it[0].is_worse(&all[0])) {
+                Some(better) => all = better,
+                None => return all,
+            }
+        }
+    }
+
+    /// All phases with other structures, from what was found.
+    fn solved_with(&mut self, mut own: Vec<Structure>, all: &[Located]) -> Option<Vec<Located>> {
+        let mut search = self.search(0);
+        let mut from = search.whole(&seen_from(all.to_vec(), 0));
+        let others = own.split_off(1);
+        from.beside.iter_mut().zip(others).for_each(|(it, other)| it.0 = other);
+        Some(in_order(search.solve(own.remove(0), &from)?, 0))
     }
 
     /// With one of the phases mended, and holds in it where they are worth having.

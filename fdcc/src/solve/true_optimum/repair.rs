@@ -13,15 +13,15 @@ use fdcc_runtime::solution::{ControlSlopes, control_slopes};
 
 /// The structure without the phase that is least there; with a control released; else nothing.
 pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Option<Structure> {
+    without_contradiction(model, located).or_else(|| released(between, located))
+}
+
+/// The structure without the phase that is least there, or without what its multiplier or its
+/// motion contradicts; else nothing.
+pub(super) fn without_contradiction(model: &Model, located: &Located) -> Option<Structure> {
     let structure = &located.structure;
-    let count = structure.phases.len();
-    let is_gone = |j: &usize| {
-        is_nothing(structure, *j) && !structure.is_touch(*j) && structure.may_leave_out(*j)
-    };
-    let gone: Vec<usize> = (0..count).filter(is_gone).collect();
-    if !gone.is_empty() && gone.len() < count {
-        let rest = gone.iter().rev().fold(structure.clone(), |rest, j| rest.without_phase(*j));
-        return Some(rest.merged());
+    if let Some(rest) = without_nothing(structure) {
+        return Some(rest);
     }
     if let Some(repelled) = (0..structure.phases.len()).find(|j| !is_attracted(model, located, *j))
     {
@@ -30,8 +30,24 @@ pub(super) fn better(model: &Model, between: &Problem, located: &Located) -> Opt
     if let Some(wrong) = Contacts::new(model, located).wrong_sign().filter(|it| it.part > CONTACT) {
         return Some(structure.without_contact(wrong.phase, wrong.limit));
     }
+    None
+}
+
+/// The structure without the phases that have shrunk to nothing, if there are some.
+pub(super) fn without_nothing(structure: &Structure) -> Option<Structure> {
+    let count = structure.phases.len();
+    let is_gone = |j: &usize| {
+        is_nothing(structure, *j) && !structure.is_touch(*j) && structure.may_leave_out(*j)
+    };
+    let gone: Vec<usize> = (0..count).filter(is_gone).collect();
+    let rest = || gone.iter().rev().fold(structure.clone(), |rest, j| rest.without_phase(*j));
+    (!gone.is_empty() && gone.len() < count).then(|| rest().merged())
+}
+
+/// The structure with a control released from a bound that its slope contradicts.
+pub(super) fn released(between: &Problem, located: &Located) -> Option<Structure> {
     let wrong = wrong_sign(between, located).filter(|it| it.part > WRONG_SIGN)?;
-    let mut other = structure.clone();
+    let mut other = located.structure.clone();
     other.phases[wrong.phase].arcs[wrong.control] = Arc::Free;
     Some(other.merged())
 }

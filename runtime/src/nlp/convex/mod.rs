@@ -157,8 +157,7 @@ fn ended(
     stop: Option<Stop>,
 ) -> Ended {
     let status = match found.status {
-        ConicStatus::Stopped if stop == Some(Stop::TimeLimit) => Status::TimeLimit,
-        ConicStatus::Stopped => Status::Interrupted,
+        ConicStatus::Stopped => stop.map_or(Status::Interrupted, Status::from),
         ConicStatus::Solved => Status::Solved,
         ConicStatus::Infeasible => Status::Infeasible,
         ConicStatus::Unbounded if proves_unbounded(nlp, &found.x) => Status::Unbounded,

@@ -13,7 +13,7 @@ use super::tuning::algorithm::MOST_RESTARTS;
 use super::tuning::restoration::REQUIRED_DECREASE;
 use super::tuning::termination::ACCEPTABLE_ERROR;
 use super::watchdog::Watchdog;
-use crate::nlp::{Counts, Nlp, Options, Progress, Status, Stop, Watch};
+use crate::nlp::{Counts, Nlp, Options, Progress, Status, Watch};
 use std::ops::ControlFlow;
 
 /// What one iteration led to.
@@ -200,11 +200,7 @@ impl Algorithm {
         self.fresh = true;
         self.residuals = Residuals::new(&self.formulation, &self.at, &self.values, &self.slopes);
         if let ControlFlow::Break(stop) = watch(&self.report()) {
-            return Outcome::Done(if stop == Stop::TimeLimit {
-                Status::TimeLimit
-            } else {
-                Status::Interrupted
-            });
+            return Outcome::Done(stop.into());
         }
         if let Some(status) = self.finished(nlp) {
             return Outcome::Done(status);

@@ -180,3 +180,66 @@ fn a_short_arc_at_an_end_is_found() {
         assert_certified(&solved(&text), 10.0 - 0.1 * 0.01 / 2.0, 1e-9);
     }
 }
+
+/// From `(0, 0)` at the speed `(0.6, 0.8)` to rest at `(2, 0)`, with an acceleration of 1: least
+/// time by shooting with the direction `c - t d` of Pontryagin (scipy, residuals 1e-15).
+const TURN: f64 = 2.593_165_244_608_84;
+
+/// On each interval of a grid a heading may have another full turn.
+#[test]
+fn a_heading_needs_no_bounds_and_may_have_any() {
+    for bounds in ["", "in [-4, 4]", "in [-6, 6]", "in [-20, 20]", "in [-1000, 1000]"] {
+        let solution = solved(&format!(
+            "free T in [0.6, 8] guess 3.8\ntime t in [0, T]\nstate p(x, y) start (0, 0)
+             state v(x, y) start (0.6, 0.8)\ncontrol th {bounds}
+             dynamics {{ p' = v  v' = (cos(th), sin(th)) }}
+             guess {{ th = 1.1 - 3.0*t/T }}\nend p == (2, 0)\nend v == (0, 0)\nminimize T"
+        ));
+        assert_certified(&solution, TURN, 1e-8);
+    }
+}
+
+/// The same by shooting, from rest to rest at `(1, 0.5)` in a wind of `(-0.3, -0.1)`: the
+/// acceleration turns within a hundredth of the time.
+#[test]
+fn an_acceleration_in_a_disc_turns_between_nodes() {
+    for limit in ["normsq(u) <= 1", "norm(u) <= 1"] {
+        let solution = solved(&format!(
+            "free T in [0.5, 10] guess 3\ntime t in [0, T]\nstate p(x, y) start 0
+             state v(x, y) start 0\ncontrol u(x, y)\ndynamics {{ p' = v  v' = u - (0.3, 0.1) }}
+             path {limit}\nend p == (1, 0.5)\nend v == 0\nminimize T"
+        ));
+        assert_certified(&solution, 2.227_380_551_848_29, 1e-8);
+    }
+}
+
+/// A dose that decays to 1 in the end, and one that grows from 1; the least stiffness with which a
+/// mass that is thrown turns at 0.6.
+#[test]
+fn what_unknowns_alone_move_touches_its_limit() {
+    let dose = solved(
+        "free d in [0, 10] guess 2\ntime t in [0, 3]\nstate c in [1, 20] start d
+         dynamics { c' = -0.35*c }\nminimize d",
+    );
+    assert_certified(&dose, 1.05_f64.exp(), 1e-8);
+    let rising = solved(
+        "free c0 in [0, 10] guess 2\ntime t in [0, 3]\nstate c in [1, 20] start c0
+         dynamics { c' = 0.1*c }\nminimize c0",
+    );
+    assert_certified(&rising, 1.0, 1e-8);
+    let reach = |k: f64| {
+        let (decay, rate) = (0.25, (k - 0.0625).sqrt());
+        let time = rate.atan2(decay) / rate;
+        2.0 / k.sqrt() * (-decay * time).exp()
+    };
+    let (mut low, mut high) = (1.0, 50.0);
+    for _ in 0..100 {
+        let middle: f64 = 0.5 * (low + high);
+        *if reach(middle) > 0.6 { &mut low } else { &mut high } = middle;
+    }
+    let spring = solved(
+        "free k in [0.1, 50] guess 5\ntime t in [0, 4]\nstate x start 0\nstate v start 2
+         dynamics { x' = v  v' = -k*x - 0.5*v }\npath x <= 0.6\nminimize k",
+    );
+    assert_certified(&spring, low, 1e-8);
+}

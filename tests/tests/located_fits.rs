@@ -137,3 +137,30 @@ fn one_experiment_goes_through_phases_with_friction() {
     let objective = simulated.expect("it can be simulated").objective.expect("it has one");
     assert!(objective < 1e-8 && solution.objective() < 1e-8, "{objective}");
 }
+
+/// Temperatures of a room between the levels 19 and 21 of its thermostat, every 0.1.
+const ROOM: [f64; 40] = [
+    18.5642, 18.8466, 19.183, 19.5108, 19.7928, 20.2446, 20.676, 20.8768, 20.6266, 20.1647,
+    19.7489, 19.1431, 19.0853, 19.3946, 19.9286, 20.1126, 20.5866, 21.0105, 20.7024, 20.2086,
+    19.8366, 19.3793, 18.9417, 19.4603, 19.9779, 20.102, 20.4485, 20.6953, 20.8505, 20.2264,
+    19.7867, 19.5851, 18.9393, 19.4563, 19.8646, 20.0914, 20.4637, 20.9363, 20.8843, 20.3747,
+];
+
+/// As it is guessed seven switches happen, and eight with what the data were made with. By
+/// `scipy.optimize.least_squares` over the closed form of the motion.
+#[test]
+fn switches_of_a_fit_are_those_near_its_guess() {
+    let row = |(k, th): (usize, &f64)| format!("{},{th}\n", 0.1 * (k + 1) as f64);
+    let rows = format!("t,th\n{}", ROOM.iter().enumerate().map(row).collect::<String>());
+    let text = "data log = csv(\"log.csv\") columns t, th
+        free p in [2, 20] guess 7\nfree l in [0.05, 2] guess 0.25\ntime t in [0, 4]
+        state th start 18\nstate on start 1\nsurface warm = th - 21\nsurface cold = th - 19
+        dynamics { th' = p*on - l*(th - 5)  on' = 0 }
+        jump off on warm rising at most 6 { on := 0 }
+        jump again on cold falling at most 6 { on := 1 }
+        fit log: th sd 0.1";
+    let solution = certified(&with_data(text, move |_| rows.clone()));
+    let expected = [("objective", 28.695_122_490_5), ("p", 8.012_388_625), ("l", 0.299_427_378)];
+    assert_near(&solution, &expected, 1e-7);
+    assert_eq!(solution.jumps.len(), 7);
+}

@@ -196,6 +196,7 @@ fn a_hold_says_what_is_zero_in_the_end() {
             shape: ControlShape::Polynomial,
             halvings: 0,
             is_graded: false,
+            steep: Vec::new(),
             is_cut: false,
         };
         let phases = [phase([Mode::Above; 2]), phase(modes)];

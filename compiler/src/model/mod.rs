@@ -6,6 +6,7 @@
 //! expressions, so that the command line can change a number.
 
 mod along;
+mod angles;
 mod at_times;
 mod declarations;
 mod duration;

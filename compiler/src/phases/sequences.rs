@@ -26,6 +26,20 @@ pub struct Sequences {
     pub may_cross: Vec<bool>,
     /// Whether the model allows others that are left out.
     pub is_cut: bool,
+    /// How often each jump may happen, if that is limited.
+    limits: Vec<Option<usize>>,
+}
+
+impl Sequences {
+    /// A sequence without its last jump, and with one more of each.
+    pub fn beside(&self, sequence: &[usize]) -> Vec<Vec<usize>> {
+        let count = |jump: usize| sequence.iter().filter(|it| **it == jump).count();
+        let may_follow = |jump: &usize| self.limits[*jump].is_none_or(|most| count(*jump) < most);
+        let longer = (0..self.limits.len()).filter(may_follow);
+        let longer = longer.map(|jump| [sequence, &[jump]].concat());
+        let shorter = sequence.split_last().map(|(_, rest)| rest.to_vec());
+        shorter.into_iter().chain(longer).collect()
+    }
 }
 
 /// All sequences in which no jump happens more often than it may; or says what cannot be solved
@@ -35,11 +49,11 @@ pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
         return Err(vec![found]);
     }
     let numbers = numbers(model)?;
-    let (most, is_cut) = most(model, &numbers);
+    let (most, limits, is_cut) = most(model, &numbers);
     let begins = beginnings(model, &numbers);
     let may_cross =
         begins.iter().zip(&most).map(|(it, most)| it.may_be_beyond && *most > 0).collect();
-    let mut found = Sequences { all: vec![Vec::new()], may_cross, is_cut };
+    let mut found = Sequences { all: vec![Vec::new()], may_cross, is_cut, limits };
     let mut next = 0;
     while next < found.all.len() {
         let shorter = found.all[next].clone();
@@ -76,8 +90,9 @@ pub(super) fn limits(model: &Model, numbers: &Numbers) -> Vec<Option<usize>> {
     model.jumps.iter().map(limit).collect()
 }
 
-/// How often each jump is tried, and whether that leaves anything out.
-fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
+/// How often each jump is tried, how often it may happen, and whether the one leaves out anything
+/// of the other.
+fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, Vec<Option<usize>>, bool) {
     let mut graph = model.graph.clone();
     let known = model.jumps.iter().map(|jump| crossed(model, numbers, &mut graph, jump));
     let known: Vec<Option<usize>> = known.collect();
@@ -97,7 +112,7 @@ fn most(model: &Model, numbers: &Numbers) -> (Vec<usize>, bool) {
         limits(model, numbers).into_iter().zip(known).map(least).collect();
     let most: Vec<usize> = limits.iter().copied().zip(&model.jumps).map(&mut tried).collect();
     let is_cut = limits.iter().zip(&most).any(|(limit, most)| *limit != Some(*most));
-    (most, is_cut)
+    (most, limits, is_cut)
 }
 
 /// How often the state can come to the surface of a jump from the side on which it happens, where

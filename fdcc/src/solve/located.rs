@@ -7,10 +7,11 @@ use super::kink_gaps::is_tight;
 use super::report::Options;
 use super::sequences::happened;
 use super::true_optimum::{
-    Certificate, Contacts, Located, Spent, Whole, locate, on_half_intervals, polished, replayed,
+    Certificate, Contacts, First, Located, Spent, Whole, locate, on_half_intervals, polished,
+    replayed,
 };
 use crate::model::Model;
-use fdcc_compiler::between_jumps;
+use fdcc_compiler::{between_jumps, limits};
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Grid, Method, Problem};
 use fdcc_runtime::solution::phases;
@@ -24,9 +25,17 @@ pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Soluti
     if !asks_for_truth(model, &between, &found) {
         return Solution::new(model.clone(), found);
     }
-    let spent = Spent::default();
-    let mut search = Search { model, between: &between, found: &found, options, spent };
-    match search.certified() {
+    let near = |first: First| {
+        let spent = Spent::default();
+        Search { model, between: &between, found: &found, options, first, spent }.certified()
+    };
+    // Without limits there are no contacts.
+    let may_differ = !limits(&between).is_empty();
+    let certified = near(First::Controls).or_else(|one| match may_differ {
+        true => near(First::Contacts).map_err(|other| one.least(other)),
+        false => Err(one),
+    });
+    match certified {
         Ok(answer) => answer,
         Err(certificate) => Solution::new(model.clone(), found).missed(certificate, options),
     }
@@ -40,6 +49,7 @@ struct Search<'s> {
     /// The smoothed answer.
     found: &'s Found,
     options: &'s Options<'s>,
+    first: First,
     spent: Spent,
 }
 
@@ -49,13 +59,8 @@ impl Search<'_> {
     /// found there, then near what it does with those of the smoothed answer.
     fn certified(&mut self) -> Result<Solution, Certificate> {
         let found = self.found;
-        let smoothed = Whole {
-            outcome: found.outcome.clone(),
-            is_exact: false,
-            jumps: jumps(found),
-            phases: Vec::new(),
-            beside: Vec::new(),
-        };
+        let outcome = found.outcome.clone();
+        let smoothed = Whole::of_smoothed(self.between, &found.problem, outcome, jumps(found));
         let mut least = self.nothing();
         let mut near = self.attempt(&smoothed);
         // Without modes and jumps a replay says nothing of the structure.
@@ -121,6 +126,7 @@ impl Search<'_> {
 
     fn attempt(&mut self, near: &Whole) -> Option<Located> {
         let models = [self.model.meaning(), self.between];
+        let near = (near, self.first);
         locate(models, &self.found.problem, near, self.options.stop, &mut self.spent)
     }
 

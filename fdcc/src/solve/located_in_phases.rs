@@ -31,9 +31,7 @@ pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> S
     let search = Search { model, found: &found, parts: &parts, options };
     match search.certified() {
         Ok(answer) => answer,
-        Err(certificate) => {
-            Solution::of_phases(model.clone(), found).missed(certificate, options)
-        }
+        Err(certificate) => Solution::of_phases(model.clone(), found).missed(certificate, options),
     }
 }
 
@@ -55,7 +53,11 @@ impl Search<'_> {
     fn certified_from(&self, first: First) -> Result<Solution, Certificate> {
         let (whole, stop) = (self.model.meaning(), self.options.stop);
         let mut spent = Spent::default();
-        let smoothed: Vec<Whole> = self.found.outcome.phases.iter().map(smoothed).collect();
+        let of = |(part, outcome): (&Part, &Outcome)| {
+            Whole::of_smoothed(part.model, part.problem, outcome.clone(), Vec::new())
+        };
+        let smoothed: Vec<Whole> =
+            self.parts.iter().zip(&self.found.outcome.phases).map(of).collect();
         let from = (&smoothed[..], first);
         let located = locate_in_phases(whole, self.parts, from, stop, &mut spent);
         let Some(mut located) = located else { return Err(self.nothing()) };
@@ -170,16 +172,6 @@ fn gap_of_objective(located: &[Located], solution: &Solution, replays: &[Verific
     let sizes = located.iter().zip(phases).map(|(it, of)| size_of_objective(it, &of.model));
     let size = own.abs().max(sizes.fold(0.0, f64::max));
     solution.objective_of(replays).map_or(f64::INFINITY, |it| (it - own).abs() / size)
-}
-
-fn smoothed(outcome: &Outcome) -> Whole {
-    Whole {
-        outcome: outcome.clone(),
-        is_exact: false,
-        jumps: Vec::new(),
-        phases: Vec::new(),
-        beside: Vec::new(),
-    }
 }
 
 /// A phase as one trajectory.

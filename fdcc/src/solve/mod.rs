@@ -21,6 +21,7 @@ pub mod optimality;
 mod phases;
 mod reach;
 mod report;
+mod sequence_of_guess;
 mod sequences;
 mod shown;
 mod simulated_start;
@@ -198,7 +199,7 @@ impl Compiled {
         let mut found = multistart::solve(&self.chain, start, options, Part::default())?;
         let motion = is_guessed.then(|| simulated_start::start(&self.model, &self.chain)).flatten();
         if let Some(motion) = motion {
-            found = multistart::also_from(found, motion, options)?;
+            found = multistart::also_from(found, motion, options, Part::default())?;
         }
         Ok(match meaning.phases.is_empty() {
             true => {

@@ -47,10 +47,11 @@ pub(super) fn also_from(
     found: FoundChain,
     start: nlp::Start,
     options: &Options,
+    part: Part,
 ) -> Result<FoundChain, Error> {
     let FoundChain { chain, outcome, step_errors, starts, others } = found;
     let first = Refined { chain, outcome, error: step_errors };
-    let other = run(&first.chain, Some(start), options, Part::default())?;
+    let other = run(&first.chain, Some(start), options, part)?;
     let Refined { chain, outcome, error } = better(first, other);
     Ok(FoundChain { chain, outcome, step_errors: error, starts, others })
 }

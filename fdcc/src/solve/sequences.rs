@@ -4,22 +4,17 @@
 use super::found::{Found, FoundChain, Jump, Phases, Sequence};
 use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
-use super::tuning::sequences::{
-    BRIEF, FEW, FEW_SEQUENCES, FEWEST_INTERVALS, LONGEST, NEXT, SHORTEST, STEPS, WORSE,
-};
+use super::sequence_of_guess::Guessed;
+use super::tuning::sequences::{BRIEF, FEW_SEQUENCES, FEWEST_INTERVALS, MOST_CLIMBS, NEXT, WORSE};
 use crate::error::Error;
 use crate::executor::Executor;
 use crate::record::Record;
 use crate::warm_start;
 use fdcc_compiler::{
-    Alike, Model, Sequences, compile_chain_like, compile_simulation, crossings, sequences,
-    with_phases,
+    Alike, Model, Sequences, compile_chain_like, crossings, sequences, with_phases,
 };
 use fdcc_runtime::nlp;
 use fdcc_runtime::problem::{Chain, Grid, Method, Problem};
-use fdcc_runtime::simulate::{
-    Controls, Event, EventKind, Options as Accuracy, Status, System, simulate,
-};
 use fdcc_runtime::solution::phases::{self, joined};
 use fdcc_runtime::solve::multistart::is_better;
 
@@ -46,20 +41,28 @@ pub(super) fn solve(
     earlier: Option<&Record>,
     options: &Options,
 ) -> Result<Found, Error> {
-    let mut possible = sequences(model).map_err(Error::Model)?;
-    if let Some(likely) = simulated(model, &possible) {
-        possible.all.retain(|sequence| *sequence != likely);
-        possible.all.insert(0, likely);
+    let possible = sequences(model).map_err(Error::Model)?;
+    let guessed = Guessed::of(model, &possible);
+    let starts =
+        Starts { between, earlier, guessed: guessed.as_ref(), best: f64::INFINITY, options };
+    let mut tried = Tried { model, starts, alike: Alike::default(), all: vec![], found: vec![] };
+    // Of measured data what happens near the guess is meant, as what is estimated is.
+    if let Some(likely) = guessed.as_ref().filter(|_| !model.sums.is_empty()) {
+        tried.add(vec![likely.events.clone()], &starts)?;
+        tried.climb(&possible)?;
     }
-    let count = possible.all.len();
-    let in_time = |at: usize| at == 0 || (options.stop)().is_continue();
-    let all = possible.all.into_iter().enumerate().take_while(|(at, _)| in_time(*at));
-    let mut alike = Alike::default();
-    let all: Result<Vec<Alternative>, Error> =
-        all.map(|(_, sequence)| Alternative::new(model, sequence, &mut alike)).collect();
-    let all = all?;
-    let is_cut = possible.is_cut || all.len() < count;
-    let found = each(&all, between, earlier, options)?;
+    let mut others = possible.all.clone();
+    if let Some(likely) = guessed.as_ref() {
+        others.retain(|sequence| *sequence != likely.events);
+        others.insert(0, likely.events.clone());
+    }
+    let count = others.len();
+    if !tried.found.iter().any(FoundChain::is_solved) {
+        tried.add(others, &starts)?;
+        tried.climb(&possible)?;
+    }
+    let is_cut = possible.is_cut || tried.all.len() < count;
+    let Tried { all, found, .. } = tried;
     let words = all.iter().map(|it| it.words.as_str());
     for (sequence, found) in words.zip(&found) {
         let part = Part { sequence: Some(sequence), start: None };
@@ -79,6 +82,81 @@ pub(super) fn solve(
     Ok(Found { next: next.into_iter().take(NEXT).map(answer).collect(), ..answer(best) })
 }
 
+/// Where solves begin.
+#[derive(Clone, Copy)]
+struct Starts<'s> {
+    between: &'s Problem,
+    earlier: Option<&'s Record<'s>>,
+    /// What happens as it is guessed.
+    guessed: Option<&'s Guessed>,
+    /// The best objective so far; infinite where there is none.
+    best: f64,
+    options: &'s Options<'s>,
+}
+
+/// The sequences that were tried, each with its answer.
+struct Tried<'s> {
+    model: &'s Model,
+    starts: Starts<'s>,
+    alike: Alike,
+    all: Vec<Alternative>,
+    found: Vec<FoundChain>,
+}
+
+impl Tried<'_> {
+    /// Tries more, as long as there is time.
+    fn add(&mut self, sequences: Vec<Vec<usize>>, starts: &Starts) -> Result<(), Error> {
+        let mut new = Vec::new();
+        for sequence in sequences {
+            let is_first = self.all.is_empty() && new.is_empty();
+            if !is_first && (starts.options.stop)().is_break() {
+                break;
+            }
+            if self.all.iter().all(|it| it.events != sequence) {
+                new.push(Alternative::new(self.model, sequence, &mut self.alike)?);
+            }
+        }
+        self.found.extend(each(&new, starts)?);
+        self.all.extend(new);
+        Ok(())
+    }
+
+    /// What happens on the true system with the unknowns of the best answer, and one jump more or
+    /// less, as long as that is better. Controls would lead elsewhere.
+    fn climb(&mut self, possible: &Sequences) -> Result<(), Error> {
+        let is_free = self.model.controls.is_empty() && self.starts.between.has_objective;
+        for _ in 0..MOST_CLIMBS {
+            if !is_free || !self.found.iter().any(FoundChain::is_solved) {
+                return Ok(());
+            }
+            let (best, _) = best_and_next(&self.found);
+            let motion = Guessed::of(&self.with_unknowns_of(best), possible);
+            let own = motion.iter().map(|it| it.events.clone());
+            let new = own.chain(possible.beside(&self.all[best].events)).collect();
+            let best_so_far = self.found[best].outcome.solution.objective;
+            let starts = Starts { guessed: motion.as_ref(), best: best_so_far, ..self.starts };
+            self.add(new, &starts)?;
+            if best_and_next(&self.found).0 == best {
+                return Ok(());
+            }
+        }
+        Ok(())
+    }
+
+    /// The model whose guess they are.
+    fn with_unknowns_of(&self, at: usize) -> Model {
+        let FoundChain { outcome, .. } = &self.found[at];
+        let values = &outcome.phases[0].trajectory.parameters;
+        let unknowns = &self.starts.between.unknowns;
+        let mut model = self.model.clone();
+        for it in unknowns {
+            let name = &self.starts.between.parameters[it.parameter].name;
+            model.set_free(name, values[it.parameter]);
+        }
+        model
+    }
+}
+
 /// The best one; and the others that are solved, the best of them first.
 fn best_and_next(found: &[FoundChain]) -> (usize, Vec<usize>) {
     let solution = |at: usize| &found[at].outcome.solution;
@@ -92,27 +170,23 @@ fn best_and_next(found: &[FoundChain]) -> (usize, Vec<usize>) {
 
 /// The answer of each, up to the first that is enough. Where there are many, those that lead to
 /// nothing on a coarse grid, or to something clearly worse, are left at that.
-fn each(
-    all: &[Alternative],
-    between: &Problem,
-    earlier: Option<&Record>,
-    options: &Options,
-) -> Result<Vec<FoundChain>, Error> {
-    if all.len() <= FEW_SEQUENCES || !between.has_objective {
-        return on_own_grids(all, between, earlier, options);
+fn each(all: &[Alternative], starts: &Starts) -> Result<Vec<FoundChain>, Error> {
+    let are_few = all.len() <= FEW_SEQUENCES && starts.best.is_infinite();
+    if are_few || !starts.between.has_objective {
+        return on_own_grids(all, starts);
     }
     let briefly: Vec<Alternative> = all.iter().map(Alternative::brief).collect();
-    let mut found = on_own_grids(&briefly, between, earlier, options)?;
+    let mut found = on_own_grids(&briefly, starts)?;
     let objectives = found.iter().filter(|it| it.is_solved());
-    let best = objectives.map(|it| it.outcome.solution.objective).fold(f64::INFINITY, f64::min);
+    let best = objectives.map(|it| it.outcome.solution.objective).fold(starts.best, f64::min);
     if best.is_infinite() && found.len() == all.len() {
-        return on_own_grids(all, between, earlier, options);
+        return on_own_grids(all, starts);
     }
     for (alternative, own) in all.iter().zip(&mut found) {
         let objective = own.outcome.solution.objective;
         if own.is_solved() && objective <= best + WORSE * best.abs() {
             let alone = std::slice::from_ref(alternative);
-            let whole = on_own_grids(alone, between, earlier, options)?;
+            let whole = on_own_grids(alone, starts)?;
             *own = whole
                 .into_iter()
                 .next()
@@ -124,17 +198,20 @@ fn each(
 }
 
 /// The same on the grids that they have.
-fn on_own_grids(
-    all: &[Alternative],
-    between: &Problem,
-    earlier: Option<&Record>,
-    options: &Options,
-) -> Result<Vec<FoundChain>, Error> {
+fn on_own_grids(all: &[Alternative], starts: &Starts) -> Result<Vec<FoundChain>, Error> {
+    let Starts { between, earlier, guessed, options, .. } = *starts;
     let one = |index: usize| {
         let alternative = &all[index];
-        let start = alternative.start(between, earlier);
         let part = Part { sequence: Some(&alternative.words), start: None };
-        let mut found = multistart::solve(&alternative.chain, start, options, part)?;
+        let is_near = |it: &&Guessed| it.is_near(&alternative.events, between);
+        let motion = guessed.filter(is_near).map(|it| it.start(between, &alternative.chain));
+        let start = alternative.start(between, earlier);
+        // With controls the guess of the model may know more than a motion that ignores its goal.
+        let first = if between.controls.is_empty() { start.or(motion.clone()) } else { start };
+        let mut found = multistart::solve(&alternative.chain, first, options, part)?;
+        if let Some(motion) = motion.filter(|_| !between.controls.is_empty()) {
+            found = multistart::also_from(found, motion, options, part)?;
+        }
         // A proof says something of the phases of this sequence only.
         found.outcome.is_impossible = false;
         found.outcome.solution.global = false;
@@ -154,52 +231,6 @@ fn on_own_grids(
         found.extend(executor.in_order(all.len() - alone, |at| one(at + alone), ends));
     }
     found.into_iter().collect()
-}
-
-/// The jumps and crossings on the true system with everything as it is guessed.
-fn simulated(model: &Model, possible: &Sequences) -> Option<Vec<usize>> {
-    let system = compile_simulation(model).ok()?;
-    let simulation =
-        simulate(&system, &Controls::Guess, &Accuracy { max_steps: STEPS, ..Accuracy::default() });
-    let mut sequence = Vec::new();
-    for event in &simulation.events {
-        sequence.extend(happening(&system, possible, &sequence, event));
-    }
-    let is_whole = matches!(simulation.status, Status::Completed);
-    let is_finite = !piles_up(&simulation.events);
-    (is_whole && is_finite && sequence.len() <= LONGEST).then_some(sequence)
-}
-
-/// Whether events follow each other ever faster: no finite number of phases is all of them.
-fn piles_up(events: &[Event]) -> bool {
-    let between = |pair: &[Event]| pair[1].time - pair[0].time;
-    let longest = events.windows(2).map(between).fold(0.0, f64::max);
-    let is_short = |pair: &[Event]| between(pair) < SHORTEST * longest;
-    events.len() > FEW && events.windows(2).any(is_short)
-}
-
-/// The jump or the crossing that an event is, if it is one.
-fn happening(
-    system: &System,
-    possible: &Sequences,
-    earlier: &[usize],
-    event: &Event,
-) -> Option<usize> {
-    let is_falling = match event.kind {
-        EventKind::Jump(at) => return Some(at),
-        // Against the direction of a jump.
-        EventKind::CrossesUp => true,
-        EventKind::CrossesDown => false,
-        _ => return None,
-    };
-    let crossed = |at: &usize| {
-        let jump = &system.jumps[*at];
-        let is_first = !earlier.contains(at) && !earlier.contains(&(at + system.jumps.len()));
-        possible.may_cross[*at]
-            && is_first
-            && (jump.surface, jump.is_falling) == (event.surface, is_falling)
-    };
-    (0..system.jumps.len()).find(crossed).map(|at| at + system.jumps.len())
 }
 
 impl Alternative {

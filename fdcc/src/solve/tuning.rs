@@ -73,6 +73,8 @@ pub(super) mod sequences {
     pub(crate) const WORSE: f64 = 0.05;
     /// Where the best one is not certified, so many others are looked at.
     pub(crate) const NEXT: usize = 2;
+    /// The best sequence is lengthened or shortened at its end so often.
+    pub(crate) const MOST_CLIMBS: usize = 6;
     /// A guess is not worth more steps of a simulation.
     pub(crate) const STEPS: usize = 20_000;
     /// More are not looked for where the guess leads to that many.

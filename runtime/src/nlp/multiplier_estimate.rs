@@ -65,9 +65,12 @@ fn pairs<T>(bounds: &[Bounds], values: &[f64], of_side: impl Fn(Option<Side>) ->
     bounds.iter().zip(values).map(|(bounds, value)| of_side(side(bounds, *value))).collect()
 }
 
+/// What is beyond its bound is at it, and so is an equality wherever it is: a start need not be
+/// feasible.
 fn side(bounds: &Bounds, value: f64) -> Option<Side> {
-    let is_near = |bound: f64| (value - bound).abs() <= NEAR * value.abs().max(1.0);
-    match (is_near(bounds.lower), is_near(bounds.upper)) {
+    let near = NEAR * value.abs().max(1.0);
+    match (value <= bounds.lower + near, value >= bounds.upper - near) {
+        _ if bounds.is_equality() => Some(Side::Lower),
         (true, _) => Some(Side::Lower),
         (_, true) => Some(Side::Upper),
         _ => None,

@@ -64,8 +64,8 @@ impl Modes<'_> {
         rows
     }
 
-    /// Those that controls move, though not at once, that are not kept in the last phase, and not
-    /// fixed by what is known of its end.
+    /// Those that controls move, though not at once, or unknowns and starts; that are not kept in
+    /// the last phase, and not fixed by what is known of its end.
     fn limits_at_end(&mut self, known: &Independent) -> Vec<Constraint> {
         let last = &self.phases[self.phases.len() - 1];
         let moving = self.moving(last);
@@ -76,7 +76,10 @@ impl Modes<'_> {
         for row in free {
             let value = self.between.division.at_own_end(row.value);
             let rates = rates(&moving, &mut self.between.division.graph, row.value);
-            let is_moved = rates.is_some_and(|it| it.len() > 1);
+            let is_moved = match rates {
+                Some(rates) => rates.len() > 1,
+                None => self.is_open(&moving, row.value),
+            };
             if is_moved && known.clone().add(self, value) {
                 let name = format!("{} at the end", row.place.name);
                 let place = Place { name, ..row.place };

@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! arc       c = c' = ... = c^(q-1) = 0 where it begins,   c^(q) = 0 along it
-//! touch     c = 0, and c' = 0 for q >= 2, where it happens
+//! touch     c = 0, and c' = 0 for q >= 2 or where no control acts, where it happens
 //! ```
 //!
 //! Elsewhere the bounds hold at the nodes. States are bounded by path conditions, too, which say
@@ -67,6 +67,15 @@ pub(super) fn rates(model: &Model, graph: &mut Graph, value: ExprId) -> Option<V
     None
 }
 
+/// A value and its derivatives of a touch: up to the first on which a control acts, or to the first
+/// one where only unknowns and starts move it.
+fn rates_of_touch(model: &Model, graph: &mut Graph, value: ExprId) -> Vec<ExprId> {
+    rates(model, graph, value).unwrap_or_else(|| {
+        let rate = approach(model, graph, value);
+        vec![value, rate, approach(model, graph, rate)]
+    })
+}
+
 impl Modes<'_> {
     pub(super) fn unbounded(&mut self) -> Range {
         let [lower, upper] =
@@ -99,13 +108,28 @@ impl Modes<'_> {
         arc: Arc,
         moving: &Model,
     ) -> Option<Vec<ExprId>> {
+        let gap = self.gap(row, arc)?;
+        rates(moving, &mut self.between.division.graph, gap)
+    }
+
+    /// `c`; nothing off the bounds.
+    fn gap(&mut self, row: &Constraint, arc: Arc) -> Option<ExprId> {
         let graph = &mut self.between.division.graph;
-        let gap = match arc {
-            Arc::Lower => graph.sub(row.value, row.range.lower),
-            Arc::Upper => graph.sub(row.value, row.range.upper),
-            Arc::Free => return None,
-        };
-        rates(moving, graph, gap)
+        match arc {
+            Arc::Lower => Some(graph.sub(row.value, row.range.lower)),
+            Arc::Upper => Some(graph.sub(row.value, row.range.upper)),
+            Arc::Free => None,
+        }
+    }
+
+    fn rates_of_touch(
+        &mut self,
+        row: &Constraint,
+        touched: Arc,
+        moving: &Model,
+    ) -> Option<Vec<ExprId>> {
+        let gap = self.gap(row, touched)?;
+        Some(rates_of_touch(moving, &mut self.between.division.graph, gap))
     }
 
     /// What holds where phase `j + 1` begins: arcs that begin, and touches.
@@ -119,13 +143,12 @@ impl Modes<'_> {
         for (at, row) in states.iter().chain(&moving.path).enumerate() {
             let is_moved = self.is_moved(j, row.value);
             let is_new = before.contacts[at] != after.contacts[at] || is_moved;
-            let (arc, most) = match (after.contacts[at], after.touches[at]) {
-                (Arc::Free, Arc::Free) => continue,
-                (Arc::Free, touched) => (touched, 2),
-                (arc, _) if is_new => (arc, usize::MAX),
+            let (rates, most) = match (after.contacts[at], after.touches[at]) {
+                (Arc::Free, touched) => (self.rates_of_touch(row, touched, &moving), 2),
+                (arc, _) if is_new => (self.rates_of(row, arc, &moving), usize::MAX),
                 _ => continue,
             };
-            let Some(rates) = self.rates_of(row, arc, &moving) else { continue };
+            let Some(rates) = rates else { continue };
             let given = (rates.len() - 1).min(most);
             for rate in &rates[..given] {
                 // A surface that is reached there may say the same.

@@ -88,6 +88,8 @@ pub struct PhaseOfModes {
     pub halvings: u32,
     /// Whether its intervals get shorter and shorter towards its ends.
     pub is_graded: bool,
+    /// Around which times inside of it intervals get shorter, in parts of 2^16 of its duration.
+    pub steep: Vec<u16>,
     /// Whether controls jump where it begins, though nothing else changes.
     pub is_cut: bool,
 }
@@ -102,6 +104,7 @@ impl PhaseOfModes {
             && self.shape == before.shape
             && self.halvings == before.halvings
             && self.is_graded == before.is_graded
+            && self.steep == before.steep
             && !is_touched
             && !self.is_cut
             && self.jump.is_none()

@@ -7,7 +7,7 @@
 use super::independent::Independent;
 use super::{Arc, Mode, Modes};
 use crate::expressions::graph::ExprId;
-use crate::model::{Constraint, Place, Range, Symbol};
+use crate::model::{Constraint, Model, Place, Range, Symbol};
 
 impl Modes<'_> {
     /// Those of the first phase; none of what is given at the start.
@@ -81,10 +81,45 @@ impl Modes<'_> {
     fn is_chosen(&self, value: ExprId) -> bool {
         let division = &self.between.division;
         let is_chosen = |at: &u32| match division.symbols[*at as usize] {
-            Symbol::State(state) => division.model.states[state].start.is_none(),
+            Symbol::State(state) => self.has_open_start(state),
             _ => false,
         };
         division.graph.inputs_of(&[value]).iter().any(is_chosen)
+    }
+
+    fn has_open_start(&self, state: usize) -> bool {
+        let model = self.between.division.model;
+        model.states[state].start.is_none_or(|start| self.reads_unknown(start))
+    }
+
+    fn reads_unknown(&self, value: ExprId) -> bool {
+        let symbols = &self.between.division.symbols;
+        let inputs = self.between.division.graph.inputs_of(&[value]);
+        inputs.iter().any(|at| matches!(symbols[*at as usize], Symbol::Free(_)))
+    }
+
+    /// Whether unknowns or starts that are chosen move a value on which no control acts.
+    pub(super) fn is_open(&self, moving: &Model, value: ExprId) -> bool {
+        let ends = moving.interval.iter().any(|it| self.reads_unknown(*it));
+        let (mut seen, mut all) = (Vec::new(), vec![value]);
+        while let Some(next) = all.pop() {
+            if ends || self.reads_unknown(next) {
+                return true;
+            }
+            for at in self.between.division.graph.inputs_of(&[next]) {
+                let Symbol::State(state) = self.between.division.symbols[at as usize] else {
+                    continue;
+                };
+                if self.has_open_start(state) {
+                    return true;
+                }
+                if !seen.contains(&state) {
+                    seen.push(state);
+                    all.push(moving.states[state].rate);
+                }
+            }
+        }
+        false
     }
 
     pub(super) fn is_of_states(&self, value: ExprId) -> bool {

@@ -107,8 +107,9 @@ impl Certificate {
     pub(crate) fn is_inaccurate(&self) -> bool {
         let mut failing = self.checks.iter().filter(|check| !check.passes()).peekable();
         failing.peek().is_some()
-            && failing
-                .all(|it| matches!(it.name, "replayed" | "objective" | "conditions" | "modes"))
+            && failing.all(|it| {
+                matches!(it.name, "replayed" | "objective" | "conditions" | "modes" | "bounds")
+            })
     }
 
     /// How often intervals may be halved for that. Where states or conditions alone differ they are

@@ -74,8 +74,8 @@ impl<'l> Contacts<'l> {
             let runs = if *contact == Arc::Free { self.runs_of_limit(j, at) } else { Vec::new() };
             for run in runs.into_iter().filter(|it| !self.is_known(j, at, it)) {
                 match (limit.order, run.count(time)) {
-                    (None, _) | (Some(0), 0 | 1) => {}
-                    (Some(2..), count) if count < FEWEST_OF_ARC => {
+                    (Some(0), 0 | 1) => {}
+                    (None | Some(2..), count) if count < FEWEST_OF_ARC => {
                         let time = self.middle(j, at, &run);
                         let touch = Touch { time, limit: at, arc: run.arc };
                         match self.end_near(j, &run) {
@@ -83,6 +83,8 @@ impl<'l> Contacts<'l> {
                             None => found.touches.push(touch),
                         }
                     }
+                    // Without a control nothing keeps it there.
+                    (None, _) => {}
                     _ => pieces.extend([(time[run.first], run.arc), (time[run.behind], Arc::Free)]),
                 }
             }
@@ -279,7 +281,7 @@ impl<'l> Contacts<'l> {
             true => of(j),
             false => (0..self.located.outcome.phases.len()).map(of).fold(0.0, f64::max),
         };
-        size.max(f64::MIN_POSITIVE)
+        size.max(self.located.least_size(self.model))
     }
 
     /// How far a limit goes up and down; on an arc, its condition is another one. One on which

@@ -16,7 +16,7 @@ use super::point::point_of;
 use super::polynomials::polynomials;
 use super::pressed::Selector;
 use super::structure::Structure;
-use super::tuning::certificate::{MEASURED, WORTH};
+use super::tuning::certificate::WORTH;
 use super::tuning::insertion::{INSIDE, ON_SURFACE, RELEASED, SETTLED};
 use super::{Located, Search};
 use fdcc_compiler::{
@@ -187,7 +187,7 @@ impl Search<'_> {
             let [end, next] = ends(column);
             end + INSIDE * (next - end)
         });
-        let size = outcome.trajectory.hamiltonian.scale.max(self.least_size(located));
+        let size = outcome.trajectory.hamiltonian.scale.max(located.least_size(self.model));
         let mut own = phases[beside].clone();
         own.arcs.fill(fdcc_compiler::Arc::Free);
         let least = |of: &PhaseOfModes, point: &Point| match at_point(self.model, of, point) {
@@ -205,14 +205,6 @@ impl Search<'_> {
             }
             _ => (f64::NEG_INFINITY, false),
         }
-    }
-
-    /// Less is no size of a Hamiltonian: of measured data that is what makes a difference to them.
-    fn least_size(&self, located: &Located) -> f64 {
-        let [first, last] = located.structure.ends();
-        let measured = || self.model.objective_at_rest().map_or(0.0, f64::abs);
-        let size = if self.model.objective_reads_sums() { MEASURED * measured() } else { 0.0 };
-        (size / (last - first)).max(f64::MIN_POSITIVE)
     }
 
     /// Whether a selector that is held in the second phase and not in the first is inside of its

@@ -3,13 +3,16 @@
 
 use super::start::Signals;
 use super::structure::Structure;
+use super::tuning::between_nodes::GRADES as GRADES_INSIDE;
 use super::tuning::certificate::{NEARLY_STATIONARY, ROUNDING, STATIONARY, WORTH_NOTHING};
 use super::tuning::search::{
     BUDGET, FEWEST, FEWEST_ITERATIONS, FINER, GRADES, INTERVALS, MOST_ITERATIONS, MOST_KNOTS,
-    MOST_SOLVES, NEAR_END, TOLERANCE,
+    MOST_SOLVES, NEAR_END, ROOM_OF_KINKS, TOLERANCE,
 };
 use super::{Located, Search, Whole};
-use fdcc_compiler::{Model, PhaseOfModes, compile_chain, with_modes, with_modes_in_phases};
+use fdcc_compiler::{
+    Model, PhaseOfModes, compile_chain, is_kink, with_modes, with_modes_in_phases,
+};
 use fdcc_runtime::nlp::{Solution as NlpSolution, Start, Status};
 use fdcc_runtime::problem::{Chain, ControlShape, Grid, Method, Order, Problem, Scheme};
 use fdcc_runtime::solve::warm_start::from_earlier;
@@ -207,7 +210,14 @@ fn start(planned: &[Planned], chain: &Chain) -> Start {
         let signals = Signals { from, unknowns, switches: &switches };
         phases.extend(signals.phases(part.model, &mut problems, structure));
     }
-    from_earlier(chain, &phases)
+    let mut start = from_earlier(chain, &phases);
+    let is_kinked = |it: &Planned| {
+        !it.from.is_exact && it.part.model.controls.iter().any(|own| is_kink(&own.place.name))
+    };
+    if let Some(warm) = start.warm.as_mut().filter(|_| planned.iter().any(is_kinked)) {
+        warm.mu = warm.mu.max(ROOM_OF_KINKS);
+    }
+    start
 }
 
 /// Where a direction is flat the last digits may take more iterations than there are, or more
@@ -284,6 +294,27 @@ fn between(knots: &[f64], [first, last]: [f64; 2], intervals: usize) -> Grid {
     Grid::Mesh(all)
 }
 
+/// Intervals that are nearer to a time inside than they are long are halved, again and again.
+fn around(grid: Grid, at: u16) -> Grid {
+    let at = f64::from(at) / f64::from(u16::MAX);
+    let mut all = match grid {
+        Grid::Mesh(all) => all,
+        Grid::Uniform(count) => (0..=count).map(|k| k as f64 / count as f64).collect(),
+        other => return other,
+    };
+    for _ in 0..GRADES_INSIDE {
+        let is_near = |pair: &&[f64]| {
+            let distance = (pair[0] - at).max(at - pair[1]).max(0.0);
+            distance < pair[1] - pair[0]
+        };
+        let middles: Vec<f64> =
+            all.windows(2).filter(is_near).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
+        all.extend(middles);
+        all.sort_by(f64::total_cmp);
+    }
+    Grid::Mesh(all)
+}
+
 /// `ends` are those of the whole time, `own` those of the phase.
 fn polynomials(
     method: &mut Method,
@@ -296,13 +327,15 @@ fn polynomials(
     let finer = if method.controls == ControlShape::Linear { FINER } else { 1 };
     let count = INTERVALS * part * f64::from(1 << phase.halvings);
     let intervals = (count.round() as usize).max(FEWEST) * finer;
+    let even = || between(knots, own, intervals);
+    let grid = if phase.is_graded { graded(intervals) } else { even() };
     *method = Method {
         scheme: Scheme::Gauss(4),
         order: Order::Fixed,
         path_at_nodes: true,
         steps: 1,
         lagged: Vec::new(),
-        grid: if phase.is_graded { graded(intervals) } else { between(knots, own, intervals) },
+        grid: phase.steep.iter().fold(grid, |grid, at| around(grid, *at)),
         tol: TOLERANCE,
         sigma: None,
         continuation: Vec::new(),

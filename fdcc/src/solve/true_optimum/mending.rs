@@ -3,6 +3,7 @@
 use super::contacts::Contacts;
 use super::range::ranges;
 use super::structure::{NewArcs, Structure};
+use super::tuning::search::{WORSE, WORSE_IF_FINER};
 use super::{Located, Search, polynomials, repair};
 use fdcc_compiler::PhaseOfModes;
 use fdcc_runtime::solve::Outcome;
@@ -25,13 +26,15 @@ impl Search<'_> {
         while let Some(structure) = self.other(&located, &tried) {
             tried.push(structure.phases.clone());
             let whole = self.whole(&located);
-            let may_rise = structure.conditions() > located.structure.conditions()
-                || structure.fineness() > located.structure.fineness();
+            let may_rise = structure.conditions() > located.structure.conditions();
+            let is_finer = structure.fineness() > located.structure.fineness();
             let is_cut = structure.cuts() > located.structure.cuts();
             let better = self.solve(structure, &whole);
             let is_kept = |it: &Located| match is_cut {
                 true => !it.is_worse(&located) && self.is_smoother(it, &located),
-                false => may_rise || !it.is_worse(&located),
+                false => {
+                    may_rise || !it.rises(&located, if is_finer { WORSE_IF_FINER } else { WORSE })
+                }
             };
             if let Some(better) = better.filter(is_kept) {
                 passed.push(std::mem::replace(&mut located, better));
@@ -58,11 +61,11 @@ impl Search<'_> {
         let (own, phases) = (&located.structure, &located.outcome.phases);
         let released = repair::released(self.problem, located);
         let touched = own.with_arcs(None, &contacts, phases);
-        let is_first = self.first == First::Contacts && released.is_some();
-        let first = is_first.then(|| touched.clone());
-        let repaired = repair::without_contradiction(self.model, located);
-        let repaired = repaired.into_iter().chain(first).chain(released);
         let arcs = |which| own.with_arcs(Some((self.problem, which)), &contacts, phases);
+        let is_first = self.first == First::Contacts && released.is_some();
+        let first = is_first.then(|| [arcs(NewArcs::All).without_overlaps(), touched.clone()]);
+        let repaired = repair::without_contradiction(self.model, located);
+        let repaired = repaired.into_iter().chain(first.into_iter().flatten()).chain(released);
         let new = [arcs(NewArcs::All), arcs(NewArcs::Longest)].into_iter();
         let new = new.chain([touched]);
         let all = repaired

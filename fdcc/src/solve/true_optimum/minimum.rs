@@ -124,7 +124,7 @@ fn loss(chain: &Chain, own: &[f64], (near, controls_near): (f64, &[f64])) -> f64
 
 /// What a signal is on interval `k` of a grid, a part of which has passed: the polynomial through
 /// its values at the points around it.
-fn interpolation(time: &[f64], (k, part): (usize, f64)) -> impl Fn(&[f64]) -> f64 {
+pub(super) fn interpolation(time: &[f64], (k, part): (usize, f64)) -> impl Fn(&[f64]) -> f64 {
     let first = k.saturating_sub(1).min(time.len().saturating_sub(POINTS));
     let points = first..(first + POINTS).min(time.len());
     let at = time[k] + part * (time[k + 1] - time[k]);

@@ -12,7 +12,9 @@
 
 mod across;
 mod across_surfaces;
+mod angles;
 mod answer;
+mod between_nodes;
 mod certificate;
 mod contacts;
 mod costates;
@@ -65,7 +67,7 @@ use joint::{Among, is_nearly_stationary, is_stationary};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use structure::Structure;
-use tuning::certificate::WORTH;
+use tuning::certificate::{MEASURED, WORTH};
 use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, WORSE};
 
 /// A structure with its optimum.
@@ -128,12 +130,11 @@ pub(crate) struct Spent {
 pub(crate) fn locate(
     [written, model]: [&Model; 2],
     problem: &Problem,
-    smoothed: &Whole,
+    (smoothed, first): (&Whole, First),
     stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
     spent: &mut Spent,
 ) -> Option<Located> {
-    let mut search =
-        Search { written, model, problem, among: None, first: First::Controls, stop, spent };
+    let mut search = Search { written, model, problem, among: None, first, stop, spent };
     let structure = Structure::of(problem, smoothed, limits(model).len());
     let first = search.repaired(structure, smoothed)?;
     let mut held = search.with_holds(first);
@@ -144,7 +145,8 @@ pub(crate) fn locate(
     Some(located)
 }
 
-/// The same structure on intervals of half the length; nothing where some were halved `most` times.
+/// The same structure on shorter intervals, in a few places or of half the length; nothing where
+/// some were halved `most` times.
 /// The other arguments are those of [`locate`].
 pub(crate) fn on_half_intervals(
     [written, model]: [&Model; 2],
@@ -155,7 +157,8 @@ pub(crate) fn on_half_intervals(
 ) -> Option<Located> {
     let mut search =
         Search { written, model, problem, among: None, first: First::Controls, stop, spent };
-    let finer = search.solve(located.structure.halved(most)?, &search.whole(located))?;
+    let sharper = search.sharpened(located).or_else(|| located.structure.halved(most))?;
+    let finer = search.solve(sharper, &search.whole(located))?;
     let mut finer = Located { insertion: located.insertion, ..finer };
     search.compared(&mut finer);
     Some(finer)
@@ -256,8 +259,13 @@ impl Search<'_> {
 impl Located {
     /// Whether another optimum was found, and a worse one.
     fn is_worse(&self, other: &Located) -> bool {
+        self.rises(other, WORSE)
+    }
+
+    /// Whether its objective is more than that of another by a part of the size of that.
+    fn rises(&self, other: &Located, part: f64) -> bool {
         let [own, its] = [self, other].map(|it| it.outcome.solution.objective);
-        own > its + WORSE * its.abs().max(other.objective_size())
+        own > its + part * its.abs().max(other.objective_size())
     }
 
     /// What the terms of the Hamiltonian add up to over time.
@@ -265,6 +273,14 @@ impl Located {
         let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
         let durations = self.structure.times.windows(2).map(|pair| pair[1] - pair[0]);
         sizes.zip(durations).map(|(size, duration)| size * duration.max(0.0)).sum()
+    }
+
+    /// Less is no size of a Hamiltonian: of measured data that is what makes a difference to them.
+    fn least_size(&self, model: &Model) -> f64 {
+        let [first, last] = self.structure.ends();
+        let measured = || model.objective_at_rest().map_or(0.0, f64::abs);
+        let size = if model.objective_reads_sums() { MEASURED * measured() } else { 0.0 };
+        (size / (last - first)).max(f64::MIN_POSITIVE)
     }
 
     /// When phases begin; and the last time.

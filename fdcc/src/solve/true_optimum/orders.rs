@@ -87,6 +87,7 @@ mod tests {
             shape: ControlShape::Polynomial,
             halvings: 0,
             is_graded: false,
+            steep: Vec::new(),
             is_cut: false,
         }
     }

@@ -45,8 +45,8 @@ pub(crate) fn locate_in_phases(
     Some(all)
 }
 
-/// The same structures on intervals of half the length; nothing where some were halved `most`
-/// times.
+/// The same structures on shorter intervals, in a few places or of half the length; nothing where
+/// some were halved `most` times.
 pub(crate) fn halved_in_phases(
     whole: &Model,
     parts: &[Part],
@@ -55,10 +55,9 @@ pub(crate) fn halved_in_phases(
     spent: &mut Spent,
 ) -> Option<Vec<Located>> {
     let mut phases = Phases { whole, parts, first: First::Controls, stop, spent };
-    let halved: Vec<Structure> =
-        all.iter().map(|it| it.structure.halved(most)).collect::<Option<_>>()?;
+    let finer = phases.sharpened(&all).or_else(|| phases.halved(&all, most))?;
     let insertions: Vec<f64> = all.iter().map(|it| it.insertion).collect();
-    let finer = phases.solved_with(halved, &all)?;
+    let finer = phases.solved_with(finer, &all)?;
     Some(phases.compared(finer, insertions))
 }
 
@@ -96,6 +95,19 @@ impl Phases<'_> {
             stop: self.stop,
             spent: self.spent,
         }
+    }
+
+    /// With shorter intervals in a few places of one phase or more.
+    fn sharpened(&mut self, all: &[Located]) -> Option<Vec<Structure>> {
+        let own = |(own, it): (usize, &Located)| self.search(own).sharpened(it);
+        let sharper: Vec<Option<Structure>> = all.iter().enumerate().map(own).collect();
+        let is_any = sharper.iter().any(Option::is_some);
+        let each = sharper.into_iter().zip(all);
+        is_any.then(|| each.map(|(it, own)| it.unwrap_or_else(|| own.structure.clone())).collect())
+    }
+
+    fn halved(&self, all: &[Located], most: u32) -> Option<Vec<Structure>> {
+        all.iter().map(|it| it.structure.halved(most)).collect()
     }
 
     /// The same structures, solved anew: what holds were worth is known.

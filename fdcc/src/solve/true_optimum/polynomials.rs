@@ -34,7 +34,7 @@ impl Polynomial<'_> {
     }
 
     /// By how much it leaves its bounds.
-    fn violation(&self, bounds: Bounds) -> f64 {
+    pub fn violation(&self, bounds: Bounds) -> f64 {
         let [from, to] = self.ends;
         let part = |part: usize| from + (to - from) * part as f64 / PARTS as f64;
         let all = (0..=PARTS).map(|it| bounds.violation(self.at(part(it))));

@@ -59,7 +59,7 @@ impl Structure {
     pub fn without_idle_touches(mut self, limits: &[Limit]) -> Self {
         for phase in &mut self.phases {
             let touches = phase.touches.iter_mut().zip(limits);
-            let idle = touches.filter(|it| matches!(it.1.order, None | Some(0)));
+            let idle = touches.filter(|it| it.1.order == Some(0));
             idle.for_each(|it| *it.0 = Arc::Free);
         }
         self.merged()

@@ -73,6 +73,7 @@ impl Structure {
                 shape: ControlShape::Polynomial,
                 halvings: if is_coarse { 0 } else { HALVINGS },
                 is_graded: false,
+                steep: Vec::new(),
                 is_cut: false,
             }
         };
@@ -92,7 +93,8 @@ impl Structure {
 
     /// How much finer than at first its intervals are.
     pub fn fineness(&self) -> u32 {
-        self.phases.iter().map(|it| it.halvings + u32::from(it.is_graded)).sum()
+        let of = |it: &PhaseOfModes| it.halvings + u32::from(it.is_graded) + it.steep.len() as u32;
+        self.phases.iter().map(of).sum()
     }
 
     /// Whether a phase is a hold between two phases on the same side: where it shrinks to nothing
@@ -179,6 +181,7 @@ impl Structure {
             if !begins.is_empty() {
                 // What was steep at an end has a phase of its own now.
                 own.is_graded = false;
+                own.steep.clear();
             }
             if begin > time[0] {
                 own.touches.fill(Arc::Free);
@@ -260,6 +263,9 @@ impl Structure {
         let mut other = self.clone();
         let mut own = PhaseOfModes { jump: None, is_cut: true, ..self.phases[j].clone() };
         own.touches.fill(Arc::Free);
+        // They were parts of the whole of it.
+        own.steep.clear();
+        other.phases[j].steep.clear();
         other.phases.insert(j + 1, own);
         other.times.insert(j + 1, time);
         other

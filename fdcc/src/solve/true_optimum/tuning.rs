@@ -20,6 +20,9 @@ pub(super) mod search {
     pub(crate) const MOST_KNOTS: usize = 500;
     /// The tolerance of each solve.
     pub(crate) const TOLERANCE: f64 = 1e-10;
+    /// The barrier parameter of a solve that begins at a smoothed answer with kinks: where its arcs
+    /// end is not known yet, and costs that are straight lines do not say it near a corner.
+    pub(crate) const ROOM_OF_KINKS: f64 = 1e-3;
     /// A solve that is begun has so many at least.
     pub(crate) const FEWEST_ITERATIONS: usize = 20;
     /// More iterations are not worth it.
@@ -33,6 +36,9 @@ pub(super) mod search {
     /// Controls jump inside of a phase where its trajectory is wrong by less than this part of what
     /// it was without.
     pub(crate) const SMOOTHER: f64 = 0.1;
+    /// An objective may rise by so much of its size with shorter intervals, which forbid what was
+    /// gained between the nodes of longer ones; by more where another optimum was found.
+    pub(crate) const WORSE_IF_FINER: f64 = 0.02;
     /// An objective has to fall by so much of its size, or a phase is not worth having.
     pub(crate) const GAIN: f64 = 1e-9;
     /// The same where nothing but a trial says that it is: other intervals gain a little, too.
@@ -93,6 +99,19 @@ pub(super) mod polynomials {
     /// such a part of the intervals is rough.
     pub(crate) const ROUGH: f64 = 0.01;
     pub(crate) const PART_ROUGH: f64 = 0.3;
+}
+
+pub(super) mod between_nodes {
+    /// Path conditions are looked at in so many points of each interval.
+    pub(crate) const PARTS: usize = 8;
+    /// This part of what is allowed is, as the sizes of conditions are less than their ranges.
+    pub(crate) const PART: f64 = 0.1;
+    /// Where more than this part of the intervals is wrong all are halved.
+    pub(crate) const FEW: f64 = 0.2;
+    /// Intervals get shorter towards so many places of a phase.
+    pub(crate) const MOST_PLACES: usize = 12;
+    /// So often are intervals halved towards such a place.
+    pub(crate) const GRADES: usize = 4;
 }
 
 pub(super) mod tracks {

@@ -23,6 +23,13 @@ def test_it_goes_on_from_the_step_before(hop):
     assert mpc.step([-9.0]).status == "infeasible"
 
 
+def test_vectors_are_told_and_found(models):
+    mpc = fdcc.Model(models / "puck.fdc").controller(N=10, sigma=0.05)
+    whole = mpc.step({"pos": (0, 0), "vel": (0.1, 0)})
+    assert whole["u"].shape == (2,) and whole["u"][0] == whole["u.x"]
+    assert whole.objective.unit == "m^2/s^3" and whole.interval.unit == "s"
+
+
 def test_wrong_calls_are_told(hop, slide):
     mpc = hop.controller(N=20)
     with pytest.raises(ValueError, match="1 finite value"):
@@ -31,5 +38,5 @@ def test_wrong_calls_are_told(hop, slide):
         mpc.set(raech=1)
     with pytest.raises(ValueError, match="names the width"):
         slide.controller(N=20)
-    with pytest.raises(KeyError):
+    with pytest.raises(ValueError, match="there is no state 'y'; there is x"):
         mpc.step({"y": 1})

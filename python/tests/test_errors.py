@@ -25,6 +25,7 @@ def test_check_tells_without_raising(tmp_path):
     file = tmp_path / "broken.fdc"
     file.write_text(BROKEN)
     found = fdcc.check(file)
+    assert repr(found) == str(found)
     assert str(file) in str(found) and "<pre>" in found._repr_html_()
     assert str(fdcc.check(BROKEN.replace("= y", "= 1"))) == "nothing wrong"
 

@@ -27,6 +27,18 @@ def test_a_cell_is_a_model():
     assert "FDC0101" in str(found) and "ramp" not in shell.user_ns
 
 
+def test_a_cell_has_a_folder_of_data(models):
+    testing = pytest.importorskip("IPython.testing.globalipapp")
+    shell = testing.start_ipython() or testing.get_ipython()
+    shell.run_line_magic("load_ext", "fdcc")
+    text = (models / "slider_fit.fdc").read_text()
+    shell.run_cell_magic("fdc", f"slider --data '{models}'", text)
+    assert shell.user_ns["slider"].solve(N=50, sigma=0.05).is_solved
+    for wrong in ("class", "a b", "a --data", "2"):
+        with pytest.raises(ValueError, match="write the name of a variable"):
+            shell.run_cell_magic("fdc", wrong, text)
+
+
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_a_notebook_runs(path):
     nbformat, nbclient = pytest.importorskip("nbformat"), pytest.importorskip("nbclient")

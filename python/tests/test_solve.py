@@ -174,6 +174,57 @@ def test_phases_are_solutions(models):
         assert {it: tuple(column) for it, column in phase.states.items()} == dict(own.states)
 
 
+def test_signals_of_phases_are_found_by_name(models):
+    solution = fdcc.Model(models / "twostage.fdc").solve(N=10)
+    boost = solution.phases.boost
+    assert np.array_equal(solution["boost.h"], boost["h"]) and "coast.thrust" in solution
+    assert np.array_equal(solution.hamiltonian["boost"], boost.hamiltonian)
+    with pytest.raises(KeyError, match="there is no 'h'.*boost.h"):
+        solution["h"]
+
+
+def test_surfaces_of_phases_are_theirs():
+    solution = fdcc.compile(
+        """state x start 0
+        state v start 0
+        control F in [-12, 12]
+        phase pull {
+          time t in [0, 2]
+          surface slip = v
+          dynamics { x' = v  2 * v' in -5.886 * Sgn(slip) + F }
+        }
+        phase rest like pull { time t in [2, 4] }
+        link pull -> rest { }
+        end x == 1
+        end v == 0
+        minimize integral(F^2)
+        method { sigma = 0.05  N = 40 }"""
+    ).solve()
+    for name, phase in solution.phases.items():
+        assert phase.surfaces.slip == solution.document.phases[name].surfaces.slip
+    assert solution.phases.rest.switches[-1].surface == "slip"
+
+
+def test_a_vector_is_an_array_of_its_parts(models):
+    solution = fdcc.Model(models / "puck.fdc").solve(N=20, sigma=0.05)
+    assert solution["pos"].shape == (21, 2) and solution["pos"].unit == "m"
+    assert np.array_equal(solution["pos"][:, 1], solution["pos.y"])
+    assert solution["u"].shape == (20, 2) and not solution["u"].flags.writeable
+
+
+def test_records_are_short_for_people(models):
+    solution = fdcc.Model(models / "block.fdc").solve(N=50, sigma=0.1)
+    assert len(repr(solution.document)) < 2000 and len(repr(solution.verify())) < 500
+    assert "'time': <51 entries>" in repr(solution.document)
+
+
+def test_what_has_names_has_attributes(hop):
+    solution = hop.solve(N=10)
+    assert hop.names.states == ("x",) and solution.states.x is solution.states["x"]
+    with pytest.raises(AttributeError, match="there is no 'y'"):
+        solution.states.y
+
+
 def test_jumps_are_told(models):
     solution = fdcc.Model(models / "bounce.fdc").solve(N=20)
     assert solution.is_solved

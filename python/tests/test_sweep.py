@@ -53,6 +53,71 @@ def test_wrong_cases_are_told(hop):
         fdcc.sweep(hop, {"reach": [1], "w": [1, 2]})
     with pytest.raises(TypeError, match="joblib.Parallel"):
         fdcc.sweep(hop, {"reach": [1]}, client=3)
+    with pytest.raises(ValueError, match="`reach` is swept twice"):
+        fdcc.sweep(hop, {"reach": [1]}, reach=2)
+    with pytest.raises(TypeError, match="`cases` cannot be 3; it needs a table"):
+        fdcc.sweep(hop, 3)
+    with pytest.raises(ValueError, match="`starts`"):
+        fdcc.sweep(hop, {"reach": [1]}, starts=0)
+
+
+def test_a_single_value_goes_with_every_row(hop):
+    table = fdcc.sweep(hop, {"reach": "40[cm]", "w": [1, 2]}, N=10)
+    assert list(table["reach"]) == [40, 40] and np.allclose(table["objective"], [0.16, 0.32])
+    assert len(fdcc.sweep(hop, {"w": 2}, N=10)) == 1
+
+
+def test_a_column_has_one_kind_and_one_unit(hop):
+    cases = {"reach": ["200[mm]", 40, "0.6 [m]"], "N": [10, "auto", 10]}
+    table = fdcc.sweep(hop, cases)
+    assert np.allclose(table["reach"], [20, 40, 60]) and table["reach"].dtype == float
+    assert list(table["N"]) == ["10", "auto", "10"]
+    assert np.allclose(table["objective"], (table["reach"] / 100) ** 2)
+    assert table.attrs["units"] == {"reach": "cm", "N": "", "objective": "m^2/s"}
+    again = fdcc.sweep(hop, table[["reach", "N"]])
+    pandas.testing.assert_frame_equal(again, table)
+
+
+@pytest.mark.parametrize("cases", [{}, [], {"w": []}])
+def test_no_case_is_a_table_without_rows(hop, cases):
+    table = fdcc.sweep(hop, cases)
+    assert len(table) == 0 and list(table.columns[-5:-3]) == ["status", "objective"]
+
+
+@pytest.fixture
+def ctrl_c(monkeypatch):
+    """Somebody presses Ctrl-C soon after the first rows are there."""
+    own, timer = fdcc._sweep._each, threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+
+    def each(*args):
+        for rows in own(*args):
+            yield rows
+            if timer.ident is None:
+                timer.start()
+
+    monkeypatch.setattr(fdcc._sweep, "_each", each)
+    yield
+    timer.join()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="signals are those of POSIX")
+@pytest.mark.parametrize("kind", ["here", "threads", "dask"])
+def test_ctrl_c_keeps_the_rows_that_ran(block, kind, ctrl_c):
+    cases, options = {"mu": np.linspace(0.1, 0.5, 40_000)}, dict(sigma=0.1, N=200, confirmed=True)
+    if kind == "dask":
+        distributed = pytest.importorskip("distributed")
+        local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}
+        with distributed.LocalCluster(**local) as cluster, distributed.Client(cluster) as client:
+            table = fdcc.sweep(block, cases, client, **options)
+    elif kind == "threads":
+        with ThreadPoolExecutor(2) as executor:
+            table = fdcc.sweep(block, cases, executor, **options)
+    else:
+        table = fdcc.sweep(block, cases, **options)
+    assert len(table) == 40_000 and set(table["status"]) == {"solved", "interrupted"}
+    ran = table["status"] == "solved"
+    assert table["objective"][ran].notna().all() and table["objective"][~ran].isna().all()
+    assert table["iterations"].dtype == int and not table["confirmed"][~ran].any()
 
 
 def test_models_go_through_pickle_with_their_data(tmp_path):

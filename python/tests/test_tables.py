@@ -25,6 +25,12 @@ def test_a_dataset_has_units_and_both_axes(hop):
     assert hop.simulate(u=solution).to_xarray()["x"].attrs["units"] == "m"
 
 
+def test_a_dataset_has_what_is_reported(models):
+    pytest.importorskip("xarray")
+    data = fdcc.Model(models / "racecar.fdc").solve(N=50, sigma=0.1).to_xarray()
+    assert data["v_normal"].dims == ("time",)
+
+
 def test_phases_have_a_table_each(models):
     pytest.importorskip("pandas")
     solution = fdcc.Model(models / "twostage.fdc").solve()
@@ -36,5 +42,22 @@ def test_plots_have_a_row_for_each_signal(models):
     matplotlib.use("Agg")
     solution = fdcc.Model(models / "block.fdc").solve(N=50)
     assert [it.get_ylabel() for it in solution.plot()] == ["x [m]", "v [m/s]", "F [N]"]
-    assert len(solution.plot(["F"])) == 1
+    assert len(solution.plot(["F"])) == len(solution.plot("F")) == 1
+    with pytest.raises(ValueError, match="`mu` is no signal over time"):
+        solution.plot(["mu"])
+    with pytest.raises(KeyError, match="there is no 'y'"):
+        solution.plot(["y"])
     assert len(fdcc.Model(models / "crossing.fdc").simulate().plot()) == 1
+
+
+def test_phases_are_drawn_one_after_the_other(models):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    solution = fdcc.Model(models / "twostage.fdc").solve(N=10)
+    height, *_ = found = solution.plot()
+    assert [it.get_ylabel() for it in found] == ["h [m]", "v [m/s]", "m [kg]", "thrust [N]"]
+    boost, coast = (it.get_xdata() for it in height.lines)
+    assert boost[0] == 0 and boost[-1] == coast[0] and coast[-1] == solution.t[-1]
+    assert len(solution.plot(["boost.h"])[0].lines) == 1
+    with pytest.raises(KeyError, match="boost.h"):
+        solution.plot(["q"])

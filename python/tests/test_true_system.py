@@ -68,6 +68,38 @@ def test_the_gradient_by_controls_has_a_number_for_each_row(slide):
         assert found[at] == pytest.approx((ends[0] - ends[1]) / (2 * step), rel=1e-6)
 
 
+def test_a_derivative_has_the_unit_of_a_quotient(slide):
+    u = {"F": [1.0, 2.0]}
+    found = slide.grad("x(end)", wrt=["mu", "v(start)", "x(start)", "F"], u=u)
+    units = {name: it.unit for name, it in found.items()}
+    assert units["mu"] == units["F"] == "m per m/s^2" and units["x(start)"] == "m per m"
+    assert "m per m/s" in found._repr_html_()
+    assert fdcc.compile("param a = 1  time t in [0, 1]  state x start 0  dynamics { x' = a }").grad(
+        "x(end)", wrt=["a"]
+    )["a"].unit == ""
+
+
+def test_a_derivative_that_is_not_there_says_why():
+    model = fdcc.compile("time t in [0, 1]  state x start 1  dynamics { x' = 5 * x^2 }")
+    found = model.grad("x(end)", wrt=["x(start)"])
+    with pytest.raises(KeyError, match="the trajectory stops at the time 0.2.*'not_finite'"):
+        found["x(start)"]
+
+
+def test_vectors_are_given_and_found(models):
+    model = fdcc.Model(models / "puck.fdc")
+    parts = model.simulate(u={"u.x": [1.0, 0.5], "u.y": [0.2, 0.1]})
+    whole = model.simulate(u={"u": np.array([[1.0, 0.2], [0.5, 0.1]])})
+    assert np.array_equal(parts["pos"], whole["pos"]) and parts["pos"].shape[1] == 2
+    with pytest.raises(ValueError, match="the control 'u' needs 2 parts, u.x, u.y"):
+        model.simulate(u={"u": np.ones((3, 3))})
+
+
+def test_simulations_show_themselves(slide):
+    html = slide.simulate()._repr_html_()
+    assert "completed" in html and "<td>m/s</td>" in html
+
+
 def test_second_derivatives_are_there_when_asked_for(slide):
     found = slide.grad("x(end)", wrt=["mu", "v0"], second=True).second
     assert found["mu"]["mu"] == pytest.approx(1 / 8)  # v0^2 / mu^3

@@ -27,7 +27,7 @@ class Signal(np.ndarray):
     name: str
     unit: str
 
-    def __new__(cls, column: Column, name: str, unit: str) -> "Signal":
+    def __new__(cls, column: Column | np.ndarray, name: str, unit: str) -> "Signal":
         self = np.frombuffer(memoryview(column), dtype=np.float64).view(cls)
         self.name, self.unit = name, unit
         return self
@@ -45,18 +45,24 @@ class Signal(np.ndarray):
         return np.asarray(result) if isinstance(result, Signal) else result
 
     def __reduce__(self) -> Any:
-        return (_restored, (np.array(self), self.name, self.unit))
+        return (restored, (np.array(self), self.name, self.unit))
 
     def __repr__(self) -> str:
         numbers = np.array2string(np.asarray(self), separator=", ", prefix="Signal(")
         return f"Signal({numbers}, name={self.name!r}, unit={self.unit!r})"
 
 
-def _restored(array: np.ndarray, name: str, unit: str) -> Signal:
+def restored(array: np.ndarray, name: str, unit: str) -> Signal:
+    """A signal of numbers that belong to no result."""
     self = array.view(Signal)
     self.name, self.unit = name, unit
     self.flags.writeable = False
     return self
+
+
+def per(of: str, by: str) -> str:
+    """The unit of a derivative, such as ``J per kg``."""
+    return f"{of or 1} per {by}" if by else of
 
 
 class Number(float):

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-
-import numpy as np
+from typing import Any
 
 from . import _fdcc
 from ._arrays import Number
 from ._records import Named
+from ._values import row, seconds, short, taken
+from ._vectors import entry, find, refuse_others
 
 
 @dataclass(frozen=True)
@@ -25,10 +26,10 @@ class Step:
     is_solved: bool
     """Whether it can be used as an optimum."""
 
-    objective: float
+    objective: Number
     """Of the optimum, or of the best iterate."""
 
-    interval: float
+    interval: Number
     """For so long the controls are meant."""
 
     violation: float
@@ -37,8 +38,9 @@ class Step:
     iterations: int
     """Of the solver."""
 
-    def __getitem__(self, name: str) -> Number:
-        return self.controls[name]
+    def __getitem__(self, name: str) -> Any:
+        """The value of a control; of a vector an array."""
+        return find(name, [self.controls])
 
 
 class Controller:
@@ -60,23 +62,36 @@ class Controller:
     True
     """
 
-    def __init__(self, controller: _fdcc.Controller, units: Mapping[str, str]) -> None:
-        self._controller, self._units = controller, units
+    def __init__(self, controller: _fdcc.Controller, units: Mapping[str, str], title: str) -> None:
+        if not isinstance(controller, _fdcc.Controller):
+            raise TypeError(f"`Model.controller` makes a controller; {short(controller)} is none")
+        self._controller, self._units, self._title = controller, units, title
         self.states, self.controls = map(tuple, controller.names)
 
     def set(self, **values: float | str) -> None:
         """Other values of parameters, in their declared units, from the next step on."""
-        self._controller.set(list(values.items()))
+        self._controller.set([(name, taken(name, it, list(values))) for name, it in values.items()])
 
     def step(
-        self, state: Mapping[str, float] | Sequence[float], budget: float | None = None
+        self, state: Mapping[str, Any] | Sequence[float], budget: float | None = None
     ) -> Step:
         """Solves from a state, in SI: by name, or in the order of ``states``. After ``budget``
-        seconds it is the best iterate."""
+        seconds it is the best iterate. Ctrl-C raises ``KeyboardInterrupt``, and the next step is
+        as good as any."""
         if isinstance(state, Mapping):
-            state = [state[name] for name in self.states]
-        values = np.asarray(state, dtype=float).tolist()
-        controls, *rest = self._controller.step(values, budget)
-        named = zip(self.controls, controls)
-        units = self._units
-        return Step(Named({name: Number(it, units.get(name, "")) for name, it in named}), *rest)
+            refuse_others("state", state, self.states)
+            state = [entry("state", state, name, self.states) for name in self.states]
+        values = row("state", state).tolist()
+        controls, status, is_solved, objective, interval, *rest = self._controller.step(
+            values, seconds("budget", budget)
+        )
+        named = {name: self._number(name, it) for name, it in zip(self.controls, controls)}
+        figures = self._number("objective", objective), self._number("time", interval)
+        return Step(Named(named), status, is_solved, *figures, *rest)
+
+    def _number(self, name: str, value: float) -> Number:
+        return Number(value, self._units.get(name, ""))
+
+    def __repr__(self) -> str:
+        states, controls = ", ".join(self.states), ", ".join(self.controls)
+        return f"<fdcc.Controller {self._title}: {states} to {controls}>"

@@ -11,7 +11,8 @@ from typing import Any, TypeVar
 import numpy as np
 
 from ._controls import Controls
-from ._model import Model, Value
+from ._model import Model
+from ._values import Value
 
 Point = Mapping[str, np.ndarray]
 Function = Callable[[Point], tuple[float, dict[str, np.ndarray]]]
@@ -62,7 +63,7 @@ def simulated(
             nothing = _nothing(point, "there is no derivative here that can be trusted")
             return found.value, nothing[1]
         return found.value, {
-            name: np.asarray(found[name]) * (model.scale(name) if name in params else 1.0)
+            name: np.asarray(found._values[name]) * (model.scale(name) if name in params else 1.0)
             for name in point
         }
 

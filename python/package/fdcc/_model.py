@@ -13,18 +13,17 @@ import numpy as np
 from . import _fdcc
 from ._controller import Controller
 from ._controls import Controls, driver
+from ._earlier import lent
 from ._gradient import Gradient
 from ._progress import progress as _progress
-from ._records import Diagnostics, Named, no_such
+from ._records import Diagnostics, Named, Record, no_such
 from ._simulation import Simulation
 from ._solution import Solution
+from ._values import MOST_INTERVALS, MOST_STARTS, Value, given, row, seconds
+from ._values import short, tolerance, whole
 
 Data = str | PathLike[str] | Mapping[str, str]
 """A folder of data files, or their texts under the names that models give them."""
-
-Value = float | str | Sequence[float]
-"""A number in the declared unit of a name, a text such as ``"200[g]"`` or ``"radau3"``, or several
-numbers."""
 
 
 def compile(text: str, *, name: str = "model", data: Data | None = None) -> "Model":
@@ -37,6 +36,9 @@ def compile(text: str, *, name: str = "model", data: Data | None = None) -> "Mod
     >>> m.names["states"]
     ('x',)
     """
+    if not isinstance(text, str):
+        needs = "the text of a model; `fdcc.Model(path)` reads a file"
+        raise TypeError(f"`text` cannot be {short(text)}; it needs {needs}")
     return Model._of(_fdcc.Model(name, text.encode(), _texts(data)))
 
 
@@ -61,25 +63,17 @@ def _read(model: str | PathLike[str]) -> tuple[str, bytes, str | None]:
 
 
 def _texts(data: Data | None) -> dict[str, str] | str | None:
-    if isinstance(data, Mapping):
-        return dict(data)
-    return None if data is None else fspath(data)
+    if not isinstance(data, Mapping):
+        return None if data is None else fspath(data)
+    for name, text in data.items():
+        if not isinstance(text, str):
+            own = type(text).__name__
+            raise TypeError(f"`data`: {name!r} needs the text of the file, not of type {own}")
+    return dict(data)
 
 
 def _read_again(name: str, text: str, data: dict[str, str]) -> "Model":
     return compile(text, name=name, data=data or None)
-
-
-def _given(values: Mapping[str, Value]) -> list[tuple[str, float | str]]:
-    """Several numbers are a list of the language."""
-    def given(value: Value) -> float | str:
-        if isinstance(value, bool):
-            raise TypeError("a value is a number or a text, not True or False")
-        if isinstance(value, (str, int, float)) or np.ndim(value) == 0:
-            return value  # type: ignore[return-value]
-        return ", ".join(repr(float(it)) for it in value)
-
-    return [(name, given(value)) for name, value in values.items() if value is not None]
 
 
 class Model:
@@ -94,7 +88,7 @@ class Model:
 
     _model: _fdcc.Model
 
-    names: Named[tuple[str, ...]]
+    names: Record
     """The names of ``states``, ``controls``, ``params``, ``free`` unknowns, ``surfaces``,
     ``report`` and ``phases``."""
 
@@ -116,7 +110,7 @@ class Model:
     def _set(self, model: _fdcc.Model) -> None:
         set = object.__setattr__
         set(self, "_model", model)
-        set(self, "names", Named({role: tuple(names) for role, names in model.names}))
+        set(self, "names", Record({role: tuple(names) for role, names in model.names}))
         set(self, "units", Named({name: si for name, si, *_ in model.units}))
 
     def __setattr__(self, name: str, value: Any) -> None:
@@ -192,22 +186,24 @@ class Model:
         >>> round(m.solve(w=2, N=20, warm=s).objective, 6)
         0.5
         """
-        if starts < 1:
-            raise ValueError("`starts` must be at least 1")
-        earlier = warm._solution if isinstance(warm, Solution) else warm and fspath(warm)
-        with _progress(self.name, progress) as report:
-            found = self._model.solve(
-                _given({**(values or {}), **named}), earlier, starts, time_limit, report
-            )
-        return Solution(found)
+        own, starts = self._given(values, named), whole("starts", starts, MOST_STARTS)
+        limit = seconds("time_limit", time_limit)
+        with lent("warm", warm) as earlier, _progress(self.name, progress) as report:
+            return Solution(self._model.solve(own, earlier, starts, limit, report))
+
+    def _given(
+        self, values: Mapping[str, Value] | None, named: Mapping[str, Value]
+    ) -> list[tuple[str, float | str]]:
+        return given(values, named, self.names["params"])
 
     def controller(
         self, N: int, *, values: Mapping[str, Value] | None = None, **named: Value
     ) -> Controller:
         """A controller with so many intervals, for closed loops; it solves the smoothed problem, so
         a model with surfaces names its ``sigma``."""
-        given = _given({**(values or {}), **named})
-        return Controller(_fdcc.Controller(self._model, given, N), self.units)
+        own, N = self._given(values, named), whole("N", N, MOST_INTERVALS)
+        title = f"{self.name}, {N} interval{'' if N == 1 else 's'}"
+        return Controller(_fdcc.Controller(self._model, own, N), self.units, title)
 
     def simulate(
         self,
@@ -226,12 +222,14 @@ class Model:
         u
             The controls, in SI: a solution or the path of a saved one, whose parameters and
             unknowns are taken, too; an object with a column or entry for each control, each value
-            held for an equal part of the time, or from the time in the entry ``t`` on; the guess of
-            the model if left out.
+            held for an equal part of the time, or from the time in the entry ``t`` on, with an
+            array for a vector, whose last axis is its parts; the guess of the model if left out.
         t
             When states are reported, ascending and in SI; at all steps if left out.
         rtol
             The relative tolerance of one step; 1e-10 if left out.
+        time_limit
+            Seconds after which it stops with the trajectory so far, as Ctrl-C does.
 
         >>> import fdcc, numpy as np
         >>> m = fdcc.compile("time t in [0, 2]  state v start 1  surface slip = v"
@@ -242,10 +240,10 @@ class Model:
         >>> round(m.simulate(u={"F": [4, 0]}).end["v"], 9)
         1.0
         """
-        times = None if t is None else [float(it) for it in t]
-        controls = driver(u, self)
-        given = _given({**(values or {}), **named})
-        found = self._model.simulate(given, controls, times, rtol, time_limit)
+        own, limit = self._given(values, named), seconds("time_limit", time_limit)
+        times = None if t is None else row("times `t`", t).tolist()
+        with driver(u, self) as controls:
+            found = self._model.simulate(own, controls, times, tolerance("rtol", rtol), limit)
         return Simulation(found, self.units)
 
     def grad(
@@ -282,8 +280,9 @@ class Model:
         (0.333333333, True)
         """
         names = [wrt] if isinstance(wrt, str) else list(wrt)
-        given = _given({**(values or {}), **named})
-        found = self._model.grad(given, of, names, driver(u, self), rtol)
+        own = self._given(values, named)
+        with driver(u, self) as controls:
+            found = self._model.grad(own, of, names, controls, tolerance("rtol", rtol))
         return Gradient(found, second)
 
     def __repr__(self) -> str:

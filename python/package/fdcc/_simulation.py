@@ -2,18 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from . import _fdcc, _tables
+from . import _fdcc, _saved, _tables
 from ._arrays import Number, Signal
-from ._records import Named, Record, read
+from ._html import table
+from ._records import Named, Record, Result, read
+from ._values import short
+from ._vectors import find
 
 
-class Simulation:
+class Simulation(Result):
     """What the true system does; all numbers are in SI.
 
-    Other entries of the document of ``fdcc simulate --json`` are attributes of the same names.
+    ``r["x"]`` is a state, ``r["pos"]`` a vector, its parts along the last axis. Other entries of the
+    document of ``fdcc simulate --json`` are attributes of the same names.
     """
 
     time: Signal
@@ -22,7 +27,11 @@ class Simulation:
     states: Named[Signal]
     """The states at these times, each of shape ``(n,)``."""
 
-    def __init__(self, simulation: _fdcc.Simulation, units: Named[str]) -> None:
+    def __init__(
+        self, simulation: _fdcc.Simulation | _saved.Simulation, units: Mapping[str, str]
+    ) -> None:
+        if not isinstance(simulation, (_fdcc.Simulation, _saved.Simulation)):
+            raise TypeError(f"`Model.simulate` makes a simulation; {short(simulation)} is none")
         set = self.__dict__.__setitem__
         set("_simulation", simulation)
         set("units", units)
@@ -30,8 +39,8 @@ class Simulation:
         states = simulation.states()
         set("states", Named({it: Signal(column, it, units.get(it, "")) for it, column in states}))
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError("a simulation cannot be changed")
+    def __reduce__(self) -> Any:
+        return (_read_again, (self._simulation.json(), self.units))
 
     @cached_property
     def document(self) -> Record:
@@ -75,12 +84,7 @@ class Simulation:
         return Named({name: Number(it, self.units.get(name, "")) for name, it in values})
 
     def __getitem__(self, name: str) -> Signal:
-        return self.time if name in ("t", "time") else self.states[name]
-
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        return getattr(self.document, name)
+        return self.time if name in ("t", "time") else find(name, [self.states])
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame``: a column for each state, indexed by ``time``."""
@@ -88,15 +92,24 @@ class Simulation:
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset`` over ``time``; units are the attribute ``units``."""
-        return _tables.dataset({"time": self.time}, {"time": self.states})
+        return _tables.dataset(self.time, self.states)
 
-    def plot(self, names: list[str] | None = None) -> Any:
+    def plot(self, names: Sequence[str] | str | None = None) -> Any:
         """Draws the states over time with matplotlib; returns its axes, one for each name."""
         from ._plot import axes
 
-        return axes(self.time, self.states if names is None else {it: self[it] for it in names})
+        wanted = [names] if isinstance(names, str) else names
+        signals = self.states if wanted is None else {it: self[it] for it in wanted}
+        return axes([(self.time, signals, ())])
 
     def __repr__(self) -> str:
         events = len(self.events)
         found = f"{self.status}, {events} event{'' if events == 1 else 's'}"
         return f"<fdcc.Simulation {self.document.model}: {found}>"
+
+    def _repr_html_(self) -> str:
+        return table(repr(self)[1:-1], ((name, it, it.unit) for name, it in self.end.items()))
+
+
+def _read_again(text: str, units: Mapping[str, str]) -> Simulation:
+    return Simulation(_saved.Simulation(text), units)

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from functools import cached_property
-from os import PathLike
+from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
-from . import _fdcc, _tables
-from ._arrays import Number, Signal
-from ._records import Named, Record, no_such, read
+from . import _fdcc, _saved, _tables
+from ._arrays import Number, Signal, per
+from ._records import Named, Record, Result, no_such, read
+from ._values import difference, short
+from ._vectors import find
 
 
-class Solution:
+class Solution(Result):
     """A solution, or the best iterate where there is none; all numbers are in SI.
 
-    ``s["x"]`` is a state, control, report, unknown or parameter. What stands in the document of
+    ``s["x"]`` is a state, control, report, unknown or parameter; ``s["pos"]`` a vector, its parts
+    along the last axis; ``s["boost.h"]`` is of a phase. What stands in the document of
     ``fdcc solve --json`` is an attribute of the same name, such as ``s.iterations``,
-    ``s.method.sigma``, ``s.jumps``.
+    ``s.method.sigma``, ``s.jumps``. It can be saved, loaded, copied and pickled.
 
     >>> import fdcc
     >>> m = fdcc.compile("time t in [0, 1] [s]  state x [m] start 0"
@@ -32,11 +36,37 @@ class Solution:
     KeyError: "there is no 'y'; there is time, x, v"
     """
 
-    def __init__(self, solution: _fdcc.Solution) -> None:
-        self.__dict__["_solution"] = solution
+    def __init__(
+        self, solution: _fdcc.Solution | _saved.Solution, phase: str | None = None
+    ) -> None:
+        if not isinstance(solution, (_fdcc.Solution, _saved.Solution)):
+            raise TypeError(
+                "`Model.solve` makes a solution, and `fdcc.Solution.load(path)` reads a saved one;"
+                f" {short(solution)} is neither"
+            )
+        self.__dict__.update(_solution=solution, _phase=phase)
 
-    def __setattr__(self, name: str, value: Any) -> None:
-        raise AttributeError("a solution cannot be changed")
+    @classmethod
+    def load(cls, path: str | PathLike[str]) -> "Solution":
+        """Reads what :meth:`save` or ``fdcc solve --out`` wrote.
+
+        >>> import fdcc, os, tempfile
+        >>> m = fdcc.compile("time t in [0, 1]  state x start 0  control u in [-1, 1]"
+        ...     "  dynamics { x' = u }  end x == 0.5  minimize integral(u^2)")
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     path = os.path.join(folder, "r.sol.json")
+        ...     m.solve(N=10).save(path)
+        ...     s = fdcc.Solution.load(path)
+        >>> s.status, s["x"].shape, m.solve(N=10, warm=s).is_solved
+        ('solved', (11,), True)
+        """
+        try:
+            return cls(_saved.Solution(Path(path).read_text(encoding="utf-8")))
+        except (KeyError, TypeError, ValueError) as error:
+            raise ValueError(f"{fspath(path)} is not a solution: {error!r}") from None
+
+    def __reduce__(self) -> Any:
+        return (_read_again, (self._solution.json(), self._phase))
 
     @property
     def model(self) -> str:
@@ -124,8 +154,11 @@ class Solution:
         return self._signals(self._solution.report())
 
     @cached_property
-    def hamiltonian(self) -> Signal:
-        """The Hamiltonian on the intervals. Shape ``(N,)``."""
+    def hamiltonian(self) -> Signal | Named[Any]:
+        """The Hamiltonian on the intervals. Shape ``(N,)``; of a model with phases that of each, by
+        name."""
+        if self.phases:
+            return Named({name: it.hamiltonian for name, it in self.phases.items()})
         of = self.units.get("objective", "")
         return Signal(self._solution.hamiltonian(), "hamiltonian", self._per(of, "time"))
 
@@ -146,18 +179,17 @@ class Solution:
         found = self.document.get("sensitivities", {}).items()
         return Named({name: Number(it, self._per(of, name)) for name, it in found})
 
+    def _per(self, of: str, name: str) -> str:
+        return per(of, self.units.get(name, ""))
+
     def _numbers(self, pairs: list[tuple[str, float]]) -> Named[Number]:
         return Named({name: Number(it, self.units.get(name, "")) for name, it in pairs})
-
-    def _per(self, of: str, name: str) -> str:
-        """``J per kg``"""
-        by = self.units.get(name, "")
-        return f"{of or 1} per {by}" if by else of
 
     @property
     def surfaces(self) -> Named[tuple[Record, ...]]:
         """The spans of time of each surface in one ``mode``, ``from`` one time ``to`` another."""
-        return self.document.surfaces
+        phase = self._phase
+        return (self.document.phases[phase] if phase else self.document).surfaces
 
     @cached_property
     def switches(self) -> tuple[Record, ...]:
@@ -180,7 +212,7 @@ class Solution:
     @cached_property
     def phases(self) -> Named["Solution"]:
         """The solutions of the phases, by name; all signals are theirs."""
-        return Named({it.model: Solution(it) for it in self._solution.phases()})
+        return Named({it.model: Solution(it, it.model) for it in self._solution.phases()})
 
     @cached_property
     def document(self) -> Record:
@@ -188,22 +220,36 @@ class Solution:
         as for the whole."""
         return read(self._solution.json())
 
-    def __getattr__(self, name: str) -> Any:
-        if name.startswith("_"):
-            raise AttributeError(name)
-        return getattr(self.document, name)
-
     def __getitem__(self, name: str) -> Any:
         if name in ("t", "time"):
             return self.time
-        for named in (self.states, self.controls, self.report, self.free, self.params):
-            if name in named:
-                return named[name]
-        raise KeyError(no_such(name, self._ipython_key_completions_()))
+        phase, _, own = name.partition(".")
+        if own and phase in self.phases:
+            return self.phases[phase][own]
+        try:
+            return find(name, self._roles)
+        except KeyError:
+            raise KeyError(no_such(name, self._ipython_key_completions_())) from None
+
+    def __contains__(self, name: str) -> bool:
+        try:
+            self[name]
+        except KeyError:
+            return False
+        return True
+
+    @property
+    def _roles(self) -> tuple[Mapping[str, Any], ...]:
+        return self.states, self.controls, self.report, self.free, self.params
 
     def _ipython_key_completions_(self) -> list[str]:
-        named = (self.states, self.controls, self.report, self.free, self.params)
-        return ["time", *(name for own in named for name in own)]
+        own = [name for named in self._roles for name in named]
+        of_phases = [
+            f"{phase}.{name}"
+            for phase, it in self.phases.items()
+            for name in (*it.states, *it.controls, *it.report)
+        ]
+        return ["time", *own, *of_phases]
 
     def verify(self, gap: float = 1e-3) -> Record | None:
         """What the controls do on the true system: whether it is ``confirmed``, and by how much
@@ -217,12 +263,12 @@ class Solution:
         >>> m.solve(N=10).verify(gap=1e-6).confirmed
         True
         """
-        return read(self._solution.verification(gap))
+        return read(self._solution.verification(difference("gap", gap)))
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Writes what ``fdcc solve`` writes as ``.sol.json``: ``fdcc verify`` reads it, and
-        ``warm`` and ``u`` take its path."""
-        Path(path).write_text(self._solution.json())
+        """Writes what ``fdcc solve`` writes as ``.sol.json``: :meth:`load` and ``fdcc verify`` read
+        it, and ``warm`` and ``u`` take its path."""
+        Path(path).write_text(self._solution.json(), encoding="utf-8")
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame``: a column for each state, control and report, indexed by ``time``;
@@ -232,27 +278,22 @@ class Solution:
         return _tables.frame(self.time, {**self.states, **self.controls, **self.report})
 
     def to_xarray(self) -> Any:
-        """An ``xarray.Dataset``: states and costates (``costate(x)``) over ``time``, controls over
-        ``interval``, where each begins; units are the attribute ``units``. Of a model with phases a
-        dataset for each, by name."""
+        """An ``xarray.Dataset``: states, costates (``costate(x)``) and reports over ``time``,
+        controls and reports of controls over ``interval``, where each begins; units are the
+        attribute ``units``. Of a model with phases a dataset for each, by name."""
         if self.phases:
             return Named({name: it.to_xarray() for name, it in self.phases.items()})
         costates = {f"costate({name})": it for name, it in self.costates.items()}
-        data = _tables.dataset(
-            {"time": self.time, "interval": cast(Signal, self.time[:-1])},
-            {"time": {**self.states, **costates}, "interval": self.controls},
-        )
+        signals = {**self.states, **costates, **self.controls, **self.report}
+        data = _tables.dataset(self.time, signals)
         return data.assign_attrs(model=self.model, status=self.status, objective=self.objective)
 
-    def plot(self, names: list[str] | None = None) -> Any:
+    def plot(self, names: Sequence[str] | str | None = None) -> Any:
         """Draws states and controls over time with matplotlib, the times shaded at which a surface
-        is held; returns its axes, one for each name."""
-        from ._plot import axes
+        is held; returns its axes, one for each name. Phases follow one another."""
+        from ._plot import drawn
 
-        signals = {**self.states, **self.controls}
-        spans = (span for spans in self.surfaces.values() for span in spans)
-        held = [(span["from"], span["to"]) for span in spans if span.mode == "held"]
-        return axes(self.time, signals if names is None else {it: self[it] for it in names}, held)
+        return drawn(self, [names] if isinstance(names, str) else names)
 
     def __str__(self) -> str:
         return f"{repr(self)[1:-1]}, {self._solution.words()}"
@@ -264,3 +305,7 @@ class Solution:
 
     def _repr_html_(self) -> str:
         return self._solution.html()
+
+
+def _read_again(text: str, phase: str | None) -> Solution:
+    return Solution(_saved.Solution(text, phase), phase)

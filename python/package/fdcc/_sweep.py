@@ -4,25 +4,24 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import closing, suppress
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
 
 from . import _fdcc
-from ._model import Model, Value, _given
+from ._cases import INTERRUPTED, Case, frame, read
+from ._model import Model
 from ._progress import seen
+from ._values import MOST_STARTS, Value, difference, given, seconds, whole
 from ._workers import Workers, workers
-
-Case = Mapping[str, Value]
 
 _SECONDS = 1.0
 """About so long a worker is busy with what it gets at a time."""
 
 _MOST = 10_000
 """No more cases are sent at a time."""
-
-_REST = ("iterations", "kkt_error", "constraint_violation", "confirmed")
 
 
 def sweep(
@@ -48,7 +47,7 @@ def sweep(
     ----------
     cases
         A table with a column for each name, such as a ``pandas.DataFrame`` or a dictionary of
-        lists; or an iterable of dictionaries.
+        lists, where a single value goes with every row; or an iterable of dictionaries.
     client
         Who solves: all processors of this machine if left out; a ``dask.distributed.Client``, the
         module ``ray``, a ``joblib.Parallel``, or any executor of ``concurrent.futures``. Each
@@ -63,9 +62,12 @@ def sweep(
     values, named
         Values for all cases.
 
-    The columns are those of the cases, with the values that were given, ``status``, ``objective``,
-    the unknowns, ``iterations``, ``kkt_error`` and ``constraint_violation``, in SI; units are in
-    ``attrs["units"]``.
+    The columns are those of the cases, in the declared units of parameters, so that they can be
+    given again; and ``status``, ``objective``, the unknowns, ``iterations``, ``kkt_error`` and
+    ``constraint_violation``, in SI. Units are in ``attrs["units"]``.
+
+    Ctrl-C raises nothing: the rows that ran are in the table, and the others have the status
+    ``interrupted``.
 
     >>> import fdcc
     >>> m = fdcc.compile("time t in [0, 1]  param w = 1  state x start 0"
@@ -75,18 +77,26 @@ def sweep(
     >>> list(table["status"]), [round(it, 6) for it in table["objective"]]
     (['solved', 'solved', 'solved'], [0.25, 0.5, 1.0])
     """
-    import pandas
+    import pandas  # noqa: F401  What makes the table is asked for before hours of work.
 
-    table = _rows(cases)
-    fixed = _given({**(values or {}), **named})
-    job = _Job(_Text.of(model), tuple(fixed), starts, time_limit, gap if confirmed else None)
-    given = [_given(case) for case in table]
-    found: list[Any] = [None] * len(given)
-    with seen(model.name, len(given), progress) as done:
-        for first, rows in _each(job, given, workers(client)):
-            found[first : first + len(rows)] = rows
-            done(len(rows))
-    return _frame(pandas, model, table, [json.loads(row) for row in found])
+    names, table = read(cases)
+    params = model.names["params"]
+    fixed = tuple(given(values, named, params))
+    for name, _ in fixed:
+        if name in names:
+            raise ValueError(f"`{name}` is swept twice: in `cases`, and for all; leave one out")
+    whole("starts", starts, MOST_STARTS)
+    gap = difference("gap", gap) if confirmed else None
+    limit = seconds("time_limit", time_limit)
+    job = _Job(_Text.of(model), fixed, starts, limit, gap)
+    own = [given(case, {}, params) for case in table]
+    found: list[Any] = [INTERRUPTED] * len(own)
+    with seen(model.name, len(own), progress) as done, suppress(KeyboardInterrupt):
+        with closing(_each(job, own, workers(client))) as each:
+            for first, rows in each:
+                found[first : first + len(rows)] = map(json.loads, rows)
+                done(len(rows))
+    return frame(model, names, table, found, confirmed)
 
 
 @dataclass(frozen=True)
@@ -117,8 +127,8 @@ class _Job:
         """Solves some cases, wherever it is called; with the seconds that it took."""
         begin = time.monotonic()
         compiled = _compiled(self.model)
-        given = [[*self.fixed, *case] for case in cases]
-        rows = compiled.solve(given, threads, self.starts, self.time_limit, self.gap)
+        own = [[*self.fixed, *case] for case in cases]
+        rows = compiled.solve(own, threads, self.starts, self.time_limit, self.gap)
         return rows, time.monotonic() - begin
 
 
@@ -128,47 +138,25 @@ def _compiled(text: _Text) -> _fdcc.Cases:
     return _fdcc.Cases(_fdcc.Model(text.name, text.text.encode(), dict(text.data) or None))
 
 
-def _each(job: _Job, given: Sequence[Any], pool: Workers) -> Iterator[tuple[int, list[str]]]:
+def _each(job: _Job, cases: Sequence[Any], pool: Workers) -> Iterator[tuple[int, list[str]]]:
     """The rows as they come, each list with the number of its first one."""
     waiting: dict[Any, tuple[int, int]] = {}
     at, size = 0, 1
-    while at < len(given) or waiting:
-        while at < len(given) and len(waiting) < 2 * pool.count:
-            end = min(at + size, len(given))
-            waiting[pool.submit(job, given[at:end])] = (at, end)
-            at = end
-        task, (rows, seconds) = pool.next(list(waiting))
-        first, end = waiting.pop(task)
-        size = _size(end - first, seconds, len(given) - at, pool.count)
-        yield first, rows
+    try:
+        while at < len(cases) or waiting:
+            while at < len(cases) and len(waiting) < 2 * pool.count:
+                end = min(at + size, len(cases))
+                waiting[pool.submit(job, cases[at:end])] = (at, end)
+                at = end
+            task, (rows, took) = pool.next(list(waiting))
+            first, end = waiting.pop(task)
+            size = _size(end - first, took, len(cases) - at, pool.count)
+            yield first, rows
+    finally:
+        pool.cancel(list(waiting))
 
 
-def _size(cases: int, seconds: float, left: int, count: int) -> int:
+def _size(cases: int, took: float, left: int, count: int) -> int:
     """How many cases are to be sent next, if so many took so long."""
-    size = min(cases * _SECONDS / max(seconds, 1e-6), 8 * cases, left / (2 * count))
+    size = min(cases * _SECONDS / max(took, 1e-6), 8 * cases, left / (2 * count))
     return max(1, min(int(size), _MOST))
-
-
-def _rows(cases: Any) -> list[Case]:
-    if hasattr(cases, "to_dict") and hasattr(cases, "columns"):  # a table of pandas
-        return cases.to_dict("records")
-    if isinstance(cases, Mapping):
-        columns = {name: list(column) for name, column in cases.items()}
-        lengths = {len(column) for column in columns.values()}
-        if len(lengths) > 1:
-            raise ValueError("the columns of `cases` have different lengths")
-        return [dict(zip(columns, row)) for row in zip(*columns.values())]
-    return [dict(case) for case in cases]
-
-
-def _frame(pandas: Any, model: Model, cases: list[Case], rows: list[dict[str, Any]]) -> Any:
-    def entries(case: Case, row: dict[str, Any]) -> dict[str, Any]:
-        first = {name: row[name] for name in ("status", "objective")}
-        rest = {name: row[name] for name in _REST if name in row}
-        return {**case, **first, **row["free"], **rest}
-
-    table = pandas.DataFrame([entries(case, row) for case, row in zip(cases, rows)])
-    table.index.name = "case"
-    names = {"objective": "objective", **{name: name for name in model.names["free"]}}
-    table.attrs["units"] = {name: model.units.get(own, "") for name, own in names.items()}
-    return table

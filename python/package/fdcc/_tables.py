@@ -28,14 +28,16 @@ def held(time: Signal, signal: Signal) -> np.ndarray:
     return values if len(values) == len(time) else np.append(values, values[-1:])
 
 
-def dataset(axes: Mapping[str, Signal], signals: Mapping[str, Mapping[str, Signal]]) -> Any:
-    """A dataset with these axes and the signals over each."""
+def dataset(time: Signal, signals: Mapping[str, Signal]) -> Any:
+    """A dataset over ``time``; a signal with a value for each interval is over ``interval``, where
+    each begins."""
     import xarray
 
-    def variable(axis: str, signal: Signal) -> Any:
+    def variable(signal: Signal) -> Any:
+        axis = "time" if len(signal) == len(time) else "interval"
         return (axis, np.asarray(signal), {"units": signal.unit})
 
-    named = {
-        name: variable(axis, it) for axis, own in signals.items() for name, it in own.items()
-    }
-    return xarray.Dataset(named, {axis: variable(axis, it) for axis, it in axes.items()})
+    named = {name: variable(it) for name, it in signals.items()}
+    has_intervals = any(axis == "interval" for axis, *_ in named.values())
+    begins = {"interval": variable(time[:-1])} if has_intervals else {}
+    return xarray.Dataset(named, {"time": variable(time), **begins})

@@ -26,6 +26,9 @@ class Workers(Protocol):
     def next(self, waiting: list[Any]) -> tuple[Any, Any]:
         """Waits for one of these; which, and its result."""
 
+    def cancel(self, waiting: list[Any]) -> None:
+        """Nobody waits for these any more."""
+
 
 def workers(client: Any) -> Workers:
     """Those of a client; see :func:`fdcc.sweep`."""
@@ -65,6 +68,9 @@ class _Here:
         task = waiting[0]
         return task, task.work(task.cases, None)
 
+    def cancel(self, waiting: list[_Task]) -> None:
+        pass
+
 
 class _WithExecutor:
     """Threads or processes of ``concurrent.futures``. One that breaks cannot be mended."""
@@ -79,6 +85,10 @@ class _WithExecutor:
     def next(self, waiting: list[Any]) -> tuple[Any, Any]:
         done = next(iter(futures.wait(waiting, return_when=futures.FIRST_COMPLETED).done))
         return done, done.result()
+
+    def cancel(self, waiting: list[Any]) -> None:
+        for task in waiting:
+            task.cancel()
 
 
 class _OnDask:
@@ -96,6 +106,9 @@ class _OnDask:
 
         done = next(iter(wait(waiting, return_when="FIRST_COMPLETED").done))
         return done, done.result()
+
+    def cancel(self, waiting: list[Any]) -> None:
+        self._client.cancel(waiting)
 
 
 class _OnRay:
@@ -115,6 +128,10 @@ class _OnRay:
     def next(self, waiting: list[Any]) -> tuple[Any, Any]:
         done = self._ray.wait(waiting, num_returns=1)[0][0]
         return done, self._ray.get(done)
+
+    def cancel(self, waiting: list[Any]) -> None:
+        for task in waiting:
+            self._ray.cancel(task)
 
 
 class _WithJoblib:
@@ -136,6 +153,9 @@ class _WithJoblib:
             self._found = dict(zip(waiting, self._all(waiting)))
         task = next(iter(self._found))
         return task, self._found.pop(task)
+
+    def cancel(self, waiting: list[_Task]) -> None:
+        pass
 
     def _all(self, waiting: list[_Task]) -> list[Any]:
         from joblib import delayed

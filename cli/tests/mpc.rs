@@ -52,7 +52,9 @@ fn what_cannot_be_closed_is_told() {
     let unnamed = BLOCK.replace("sigma = 0.01 [m/s]", "");
 
     let far = RAMP.replace("goal = 1", "goal = 9");
-    let files = [("block.fdc", BLOCK), ("unnamed.fdc", &unnamed)];
+    let pushed = "state x [m] start 0\nstate v [m/s] start 0\ncontrol F in [-8, 8] [N]\n\
+        param m = 2 [kg]\ntime t in [0, 1] [s]\ndynamics { x' = v  v' = F/m }\n";
+    let files = [("block.fdc", BLOCK), ("unnamed.fdc", &unnamed), ("pushed.fdc", pushed)];
     let files = [&files[..], &[("ramp.fdc", RAMP), ("far.fdc", &far)]].concat();
     let files: Vec<(&str, &[u8])> = files.iter().map(|it| (it.0, it.1.as_bytes())).collect();
     let folder = folder("mpc_wrong", &files);
@@ -60,6 +62,7 @@ fn what_cannot_be_closed_is_told() {
         (&["unnamed.fdc", "--steps", "1"], 3, "names the width of its layers"),
         (&["ramp.fdc", "--steps", "1", "--plant", "block.fdc"], 3, "nobody controls `F`"),
         (&["block.fdc", "--steps", "1", "--plant", "ramp.fdc"], 3, "has no state `v`"),
+        (&["block.fdc", "--steps", "1", "--plant", "pushed.fdc"], 3, "`F` is [m/s^2] in `block`"),
         (&["ramp.fdc", "--steps", "0"], 3, "--steps"),
         (&["ramp.fdc"], 3, "--steps"),
         (&["far.fdc", "--steps", "1"], 2, ""),

@@ -11,7 +11,8 @@ use crate::output::{self, files};
 use crate::page;
 use crate::watch::{Deadline, catch_interrupts, is_interrupted};
 use clap::Args;
-use fdcc::{Accuracy, ClosedLoop, Model, Options};
+use fdcc::language::NamedUnit;
+use fdcc::{Accuracy, ClosedLoop, Error, Model, Options};
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -69,6 +70,7 @@ impl Mpc {
 
     /// The loop.
     fn close(&self, model: &Model, plant: &Model) -> Result<ClosedLoopDocument, Failure> {
+        measure_alike(model, plant)?;
         let problem = model.problem()?;
         let controller = model.controller(problem.method.intervals())?;
         let mut document = ClosedLoopDocument::new(&controller, plant.name(), all_bounds(&problem));
@@ -124,4 +126,32 @@ impl Mpc {
         let exit = if document.is_fine() { Exit::Fine } else { Exit::NotSolved };
         wrote(written, self.json, exit, model.source())
     }
+}
+
+/// A value goes from one to the other as a number: what has the same name has to measure the same,
+/// as far as both say what they measure.
+fn measure_alike(model: &Model, plant: &Model) -> Result<(), Error> {
+    let meaning = model.meaning();
+    let states = meaning.states.iter().map(|it| &it.place.name);
+    let names: Vec<&String> =
+        states.chain(meaning.controls.iter().map(|it| &it.place.name)).collect();
+    for own in model.units().iter().filter(|it| names.contains(&&it.name)) {
+        let other = plant.units().iter().find(|it| it.name == own.name);
+        if let Some(other) = other.filter(|it| it.dimension != own.dimension) {
+            let shown = |unit: &NamedUnit| match unit.unit.as_str() {
+                "" => "a plain number".to_owned(),
+                unit => format!("[{unit}]"),
+            };
+            return Err(Error::Call(format!(
+                "`{}` is {} in `{}`, and {} in the plant `{}`; a closed loop hands it over as it \
+                 is, so both have to measure the same",
+                own.name,
+                shown(own),
+                model.name(),
+                shown(other),
+                plant.name()
+            )));
+        }
+    }
+    Ok(())
 }

@@ -27,9 +27,9 @@ impl Model {
         let is_angle = |control: usize| {
             let input = self.input_of(Symbol::Control(control));
             let at_ends = self.conditions_read(control);
-            let by = |input| dependence(&self.graph, input, &roots);
-            let is_bent = |it: &By| *it == By::Other || matches!(it, By::Slope(_));
-            at_ends == [false; 2] && input.is_some_and(|it| !by(it).iter().any(is_bent))
+            let all = |input| dependence(&self.graph, input, &roots);
+            at_ends == [false; 2]
+                && input.is_some_and(|it| all(it).iter().all(|by| *by == By::Turns))
         };
         let are_told = self.sums.is_empty() && self.at_times.is_empty();
         (0..self.controls.len()).map(|it| are_told && is_angle(it)).collect()

@@ -8,7 +8,7 @@ use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::simulate::{
     Controls, Event, EventKind, Options as Accuracy, Simulation, Status, System, simulate,
 };
-use fdcc_runtime::solve::warm_start::{Earlier, from_trajectories};
+use fdcc_runtime::solve::warm_start::{Earlier, from_earlier};
 
 /// A simulation of the guess that reaches its end.
 pub(super) struct Guessed {
@@ -57,7 +57,7 @@ impl Guessed {
             unknowns: self.unknowns(between, chain, problem),
             ..self.phase(j, [pair[0], pair[1]], problem)
         });
-        from_trajectories(chain, &each.collect::<Vec<_>>())
+        from_earlier(chain, &each.collect::<Vec<_>>())
     }
 
     /// When an event happens; the last time if it does not.

@@ -47,7 +47,8 @@ pub(super) fn solve(
         Starts { between, earlier, guessed: guessed.as_ref(), best: f64::INFINITY, options };
     let mut tried = Tried { model, starts, alike: Alike::default(), all: vec![], found: vec![] };
     // Of measured data what happens near the guess is meant, as what is estimated is.
-    if let Some(likely) = guessed.as_ref().filter(|_| !model.sums.is_empty()) {
+    let is_fit = !model.sums.is_empty() && model.controls.is_empty();
+    if let Some(likely) = guessed.as_ref().filter(|_| is_fit) {
         tried.add(vec![likely.events.clone()], &starts)?;
         tried.climb(&possible)?;
     }
@@ -106,13 +107,13 @@ struct Tried<'s> {
 impl Tried<'_> {
     /// Tries more, as long as there is time.
     fn add(&mut self, sequences: Vec<Vec<usize>>, starts: &Starts) -> Result<(), Error> {
-        let mut new = Vec::new();
+        let mut new: Vec<Alternative> = Vec::new();
         for sequence in sequences {
             let is_first = self.all.is_empty() && new.is_empty();
             if !is_first && (starts.options.stop)().is_break() {
                 break;
             }
-            if self.all.iter().all(|it| it.events != sequence) {
+            if self.all.iter().chain(&new).all(|it| it.events != sequence) {
                 new.push(Alternative::new(self.model, sequence, &mut self.alike)?);
             }
         }

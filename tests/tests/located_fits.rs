@@ -164,3 +164,22 @@ fn switches_of_a_fit_are_those_near_its_guess() {
     assert_near(&solution, &expected, 1e-7);
     assert_eq!(solution.jumps.len(), 7);
 }
+
+/// Two levels of a thermostat for three hours: the start at the motion of the guess has the
+/// switches of the best answer. By Nelder and Mead (scipy) over the closed form of the motion.
+#[test]
+fn levels_of_a_thermostat_are_found_from_the_motion_of_their_guess() {
+    let model = Model::from_text(
+        "two_levels",
+        "free hi in [20.2, 23] guess 21\nfree lo in [17, 19.8] guess 19\ntime t in [0, 3]
+         state th start 18\nstate on start 1\nstate en start 0
+         surface warm = th - hi\nsurface cold = th - lo
+         dynamics { th' = 8*on - 0.3*(th - 5)  on' = 0  en' = 8*on }
+         jump off on warm rising at most 2 { on := 0 }
+         jump again on cold falling at most 2 { on := 1 }
+         minimize integral((th - 20)^2) + 0.2*en(end)",
+    );
+    let solution = certified(&model.expect("it has no mistake"));
+    let expected = [("objective", 4.859_435_777_32), ("hi", 21.079_187_7), ("lo", 18.860_812_3)];
+    assert_near(&solution, &expected, 5e-8);
+}

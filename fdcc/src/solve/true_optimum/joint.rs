@@ -196,6 +196,12 @@ impl Slice {
     }
 }
 
+impl Planned<'_> {
+    fn has_kinks(&self) -> bool {
+        self.part.model.controls.iter().any(|it| is_kink(&it.place.name))
+    }
+}
+
 fn start(planned: &[Planned], chain: &Chain) -> Start {
     let times = planned.iter().flat_map(|it| {
         let times = &it.structure.times;
@@ -211,10 +217,11 @@ fn start(planned: &[Planned], chain: &Chain) -> Start {
         phases.extend(signals.phases(part.model, &mut problems, structure));
     }
     let mut start = from_earlier(chain, &phases);
-    let is_kinked = |it: &Planned| {
-        !it.from.is_exact && it.part.model.controls.iter().any(|own| is_kink(&own.place.name))
+    let is_kinked = match planned {
+        [only] => !only.from.is_exact && only.has_kinks(),
+        _ => false,
     };
-    if let Some(warm) = start.warm.as_mut().filter(|_| planned.iter().any(is_kinked)) {
+    if let Some(warm) = start.warm.as_mut().filter(|_| is_kinked) {
         warm.mu = warm.mu.max(ROOM_OF_KINKS);
     }
     start

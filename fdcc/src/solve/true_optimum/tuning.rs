@@ -20,8 +20,9 @@ pub(super) mod search {
     pub(crate) const MOST_KNOTS: usize = 500;
     /// The tolerance of each solve.
     pub(crate) const TOLERANCE: f64 = 1e-10;
-    /// The barrier parameter of a solve that begins at a smoothed answer with kinks: where its arcs
-    /// end is not known yet, and costs that are straight lines do not say it near a corner.
+    /// The barrier parameter of a solve that begins at a smoothed answer of one piece with kinks:
+    /// where its arcs end is not known yet, and costs that are straight lines do not say it near a
+    /// corner. Phases that share their times say it, and would be moved away from it.
     pub(crate) const ROOM_OF_KINKS: f64 = 1e-3;
     /// A solve that is begun has so many at least.
     pub(crate) const FEWEST_ITERATIONS: usize = 20;

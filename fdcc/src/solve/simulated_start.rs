@@ -2,12 +2,13 @@
 //! unknowns leads to: signals that are guessed apart from each other may lead to a trajectory that
 //! a grid allows, and no motion does.
 
+use super::tuning::sequences::STEPS;
 use crate::error::Error;
 use crate::model::Model;
 use crate::simulation::Simulation;
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Chain, Problem};
-use fdcc_runtime::simulate::Options as Accuracy;
+use fdcc_runtime::simulate::{Controls, Options as Accuracy};
 use fdcc_runtime::solve::warm_start::{Earlier, from_trajectories};
 
 /// The motion from the guess on the grids of a chain; nothing where controls are free, nothing is
@@ -27,9 +28,9 @@ pub(super) fn start(model: &Model, chain: &Chain) -> Option<Start> {
 }
 
 fn motions(model: &Model) -> Result<Vec<Simulation>, Error> {
-    let accuracy = Accuracy::default();
+    let accuracy = Accuracy { max_steps: STEPS, ..Accuracy::default() };
     match model.meaning().phases.is_empty() {
-        true => Ok(vec![model.simulate(&fdcc_runtime::simulate::Controls::Guess, &accuracy)?]),
+        true => Ok(vec![model.simulate(&Controls::Guess, &accuracy)?]),
         false => Ok(model.simulate_phases(None, &accuracy)?.all),
     }
 }

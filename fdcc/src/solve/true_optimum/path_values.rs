@@ -27,8 +27,11 @@ pub(super) fn value_at_end(problem: &Problem, trajectory: &Trajectory, row: usiz
 pub(super) fn points(problem: &Problem, trajectory: &Trajectory) -> Columns {
     let count = trajectory.time.len() - 1;
     let mut points = Columns::new(problem.path.layout().point_inputs(), count);
-    for k in 0..count {
-        points.column_mut(0)[k] = k as f64 / count as f64;
+    let time = &trajectory.time;
+    let (first, duration) = (time[0], time[count] - time[0]);
+    // Intervals need not be equal.
+    for k in (0..count).filter(|_| duration > 0.0) {
+        points.column_mut(0)[k] = (time[k] - first) / duration;
     }
     for (at, column) in trajectory.states.iter().chain(&trajectory.controls).enumerate() {
         points.column_mut(1 + at).copy_from_slice(&column[..count]);

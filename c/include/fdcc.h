@@ -32,14 +32,23 @@ fdcc_controller *fdcc_new(const char *model, size_t intervals, char *message, si
 
 void fdcc_free(fdcc_controller *controller);
 
-/* Numbers of states and controls; their names are the controller's. NULL beyond the last one. */
+/* Numbers of states, controls and signals; their names are the controller's. NULL beyond the last. */
 size_t fdcc_states(const fdcc_controller *controller);
 size_t fdcc_controls(const fdcc_controller *controller);
+size_t fdcc_signals(const fdcc_controller *controller);
 const char *fdcc_state_name(const fdcc_controller *controller, size_t index);
 const char *fdcc_control_name(const fdcc_controller *controller, size_t index);
+const char *fdcc_signal_name(const fdcc_controller *controller, size_t index);
 
 /* Another value of a parameter, in its declared unit, from the next step on. */
 int fdcc_set(fdcc_controller *controller, const char *parameter, double value);
+
+/* The values of a signal from the next step on: one for each point of the grid, which has one more
+ * than there are intervals, or one for all of them. */
+int fdcc_set_signal(fdcc_controller *controller, const char *signal, const double *values, size_t count);
+
+/* Signals that were not given have the values of the text from this time on. */
+int fdcc_set_time(fdcc_controller *controller, double now);
 
 /* Each step ends after so many microseconds with its best iterate; 0, as at first, for no limit. */
 int fdcc_set_budget(fdcc_controller *controller, unsigned long long microseconds);

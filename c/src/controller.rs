@@ -27,6 +27,8 @@ pub struct Controller {
     pub states: Vec<CString>,
     /// The names of the controls.
     pub controls: Vec<CString>,
+    /// The names of the signals.
+    pub signals: Vec<CString>,
     /// Why the last call was wrong.
     pub message: CString,
     /// Whether a call ended with a mistake of the library.
@@ -68,8 +70,9 @@ impl Controller {
         let inner = made.map_err(|error| words(&error, text))?;
         let states = inner.states().map(c_text).collect();
         let controls = inner.controls().map(c_text).collect();
+        let signals = inner.signals().map(c_text).collect();
         let message = CString::default();
-        Ok(Controller { inner, states, controls, message, is_broken: false, budget: None })
+        Ok(Controller { inner, states, controls, signals, message, is_broken: false, budget: None })
     }
 
     /// Notes why a call is wrong.
@@ -87,7 +90,25 @@ impl Controller {
     /// Another value of a parameter.
     pub fn set(&mut self, parameter: Option<&str>, value: f64) -> Status {
         let Some(name) = parameter else { return self.wrong("the name is no text in UTF-8") };
-        match self.inner.set(name, value) {
+        let set = self.inner.set(name, value);
+        self.ended(set)
+    }
+
+    /// The values of a signal.
+    pub fn set_signal(&mut self, signal: Option<&str>, values: &[f64]) -> Status {
+        let Some(name) = signal else { return self.wrong("the name is no text in UTF-8") };
+        let set = self.inner.set_signal(name, values);
+        self.ended(set)
+    }
+
+    /// The time of the signals that were not given.
+    pub fn set_time(&mut self, now: f64) -> Status {
+        let set = self.inner.set_time(now);
+        self.ended(set)
+    }
+
+    fn ended(&mut self, call: Result<(), fdcc::Error>) -> Status {
+        match call {
             Ok(()) => self.fine(Status::Solved),
             Err(error) => self.wrong(&error.to_string()),
         }

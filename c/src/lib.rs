@@ -103,6 +103,42 @@ pub unsafe extern "C" fn fdcc_set(
     unsafe { with(controller, |it| it.set(text(parameter), value)) }
 }
 
+/// The values of a signal.
+///
+/// # Safety
+///
+/// The controller is null or from [`fdcc_new`]; the name is null or ends with 0; the values are
+/// null, or so many.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fdcc_set_signal(
+    controller: *mut Controller,
+    signal: *const c_char,
+    values: *const f64,
+    count: usize,
+) -> c_int {
+    let set = |it: &mut Controller| {
+        if values.is_null() {
+            return it.wrong("`values` must not be null");
+        }
+        // SAFETY: as the caller promises.
+        let (name, values) = unsafe { (text(signal), slice::from_raw_parts(values, count)) };
+        it.set_signal(name, values)
+    };
+    // SAFETY: as the caller promises.
+    unsafe { with(controller, set) }
+}
+
+/// The time of the signals that were not given.
+///
+/// # Safety
+///
+/// The controller is null or from [`fdcc_new`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fdcc_set_time(controller: *mut Controller, now: f64) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with(controller, |it| it.set_time(now)) }
+}
+
 /// The time for each step.
 ///
 /// # Safety
@@ -165,11 +201,16 @@ asked! {
     fdcc_states(it) -> usize, 0, Some(it.states.len());
     /// The number of controls.
     fdcc_controls(it) -> usize, 0, Some(it.controls.len());
+    /// The number of signals.
+    fdcc_signals(it) -> usize, 0, Some(it.signals.len());
     /// The name of a state.
     fdcc_state_name(it, at) -> *const c_char, ptr::null(), it.states.get(at).map(|it| it.as_ptr());
     /// The name of a control.
     fdcc_control_name(it, at) -> *const c_char, ptr::null(),
         it.controls.get(at).map(|it| it.as_ptr());
+    /// The name of a signal.
+    fdcc_signal_name(it, at) -> *const c_char, ptr::null(),
+        it.signals.get(at).map(|it| it.as_ptr());
     /// Why the last call was wrong.
     fdcc_message(it) -> *const c_char, c"".as_ptr(), Some(it.message.as_ptr());
     /// The objective.

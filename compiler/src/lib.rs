@@ -23,7 +23,7 @@ pub mod units;
 
 pub use analyze::repair::repair;
 pub use analyze::sensitivity_query::check_with_objective;
-pub use analyze::{Analysis, Checked, analyze, analyze_with, check, check_with};
+pub use analyze::{Analysis, Checked, analyze, analyze_with, check, check_given, check_with};
 pub use compile::alike::Alike;
 pub use compile::chain::{
     ChainCode, ChainExpectations, chain_expectations, compile_chain, compile_chain_by_parameters,
@@ -40,7 +40,7 @@ pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use kinks::{Kinks, is_kink, side_of, without_kinks};
 pub use lower::{Expected, LoweredProblem};
-pub use model::{Along, Model, Phase, Switch};
+pub use model::{Along, Border, Model, Phase, Plane, Plot, Switch};
 pub use phases::{
     Arc, Course, Ends, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Sequences, Slopes,
     between_jumps, crossings, ends_at, hamiltonian, is_uncontrolled, limits, may_hold, sequences,

@@ -36,9 +36,9 @@ module.exports = grammar({
 
     _item: ($) =>
       choice(
-        $.parameter, $.constant, $.definition, $.function, $.data, $.free, $.time, $.state, $.control, $.surface,
+        $.parameter, $.constant, $.definition, $.signal, $.function, $.data, $.free, $.time, $.state, $.control, $.surface,
         $.dynamics, $.metric, $.jump, $.start, $.end, $.at, $.path, $.objective, $.fit, $.guess, $.phase, $.link, $.method, $.sweep,
-        $.report, $.expect,
+        $.report, $.plot, $.expect,
       ),
 
     // ---- Declarations ----
@@ -47,6 +47,7 @@ module.exports = grammar({
       item("param", field("name", $.name), optional(seq("=", $._expression, optional($.unit))), optional($.bounds)),
     constant: ($) => item("const", field("name", $.name), "=", $._expression, optional($.unit)),
     definition: ($) => item("let", field("name", $.name), optional($.unit), "=", $._expression),
+    signal: ($) => item("signal", field("name", $.name), optional($.unit), "=", $._expression),
     function: ($) => item("fn", field("name", $.name), $.names, "=", $._expression),
     names: ($) => seq("(", list($.name), ")"),
     data: ($) =>
@@ -118,6 +119,9 @@ module.exports = grammar({
     sweep: ($) => item("sweep", block($.swept)),
     swept: ($) => seq($.name, "=", list($._expression)),
     report: ($) => item("report", block($.binding)),
+    plot: ($) =>
+      item("plot", field("name", $.name), ":", list($._expression), "over", field("over", $._expression), optional($.border)),
+    border: ($) => seq("with", list(field("path", $.name))),
     expect: ($) => item("expect", block($.check)),
     check: ($) => seq($._expression, $.relation, $._expression, optional($.within)),
     within: ($) => seq(keyword("within"), $._expression, optional($.unit)),

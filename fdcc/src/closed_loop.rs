@@ -57,12 +57,13 @@ impl ClosedLoop {
         &self.state
     }
 
-    /// Solves from the state of the plant.
+    /// Solves from the state of the plant; the signals of the controller are at its time.
     ///
     /// # Errors
     ///
     /// Those of [`Controller::step`].
     pub fn solve(&mut self, options: &Options) -> Result<&Solution, Error> {
+        self.controller.set_time(self.plant.time())?;
         self.controller.step(&self.state, options)
     }
 

@@ -53,6 +53,8 @@ pub enum ItemKind {
     Const { name: Ident, value: Expr, unit: Option<Unit> },
     /// `let name [unit] = expr`
     Let { name: Ident, unit: Option<Unit>, value: Expr },
+    /// `signal name [unit] = expr`
+    Signal { name: Ident, unit: Option<Unit>, value: Expr },
     /// `fn name(a, b) = expr`
     Fn { name: Ident, arguments: Vec<Ident>, body: Expr },
     /// `data name = csv("file") columns t [s], x [m]`
@@ -117,6 +119,8 @@ pub enum ItemKind {
     Sweep { lists: Vec<Swept> },
     /// `report { name = expr }`
     Report { bindings: Vec<Binding> },
+    /// `plot name: expr, expr over expr with path`
+    Plot { name: Ident, curves: Vec<Expr>, over: Expr, borders: Vec<Ident> },
     /// `expect { expr == expr within expr }`
     Expect { checks: Vec<Check> },
 }

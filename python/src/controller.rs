@@ -35,12 +35,26 @@ impl Controller {
         Ok(Controller { model, inner: Mutex::new(inner) })
     }
 
-    /// The names of the states and of the controls.
+    /// The names of the states, of the controls and of the signals.
     #[getter]
-    fn names(&self) -> (Vec<String>, Vec<String>) {
+    fn names(&self) -> [Vec<String>; 3] {
         let inner = self.inner.lock().expect("nobody panics with the lock");
-        let (states, controls) = (inner.states(), inner.controls());
-        (states.map(str::to_owned).collect(), controls.map(str::to_owned).collect())
+        let owned = |names: &mut dyn Iterator<Item = &str>| names.map(str::to_owned).collect();
+        [owned(&mut inner.states()), owned(&mut inner.controls()), owned(&mut inner.signals())]
+    }
+
+    /// The values of signals, and the time from which on the others have those of the text.
+    fn set_signals(
+        &self,
+        py: Python,
+        given: Vec<(String, Vec<f64>)>,
+        now: Option<f64>,
+    ) -> PyResult<()> {
+        let mut inner = self.inner.lock().expect("nobody panics with the lock");
+        let set = |(name, values): &(String, Vec<f64>)| inner.set_signal(name, values);
+        let set = given.iter().try_for_each(set);
+        let set = set.and_then(|()| now.map_or(Ok(()), |now| inner.set_time(now)));
+        set.map_err(|error| raised(py, error, self.model.source()))
     }
 
     /// Other values of parameters, from the next step on.

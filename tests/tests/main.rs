@@ -63,6 +63,7 @@ mod section_two;
 mod section_two_page;
 mod semantics;
 mod sensitivities;
+mod signals;
 mod simulations;
 mod slips;
 mod smoothing;

@@ -5,6 +5,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::files;
 use crate::page::figures::{Figure, figures};
+use crate::page::plots::{Portrait, portraits};
 use crate::page::{json::Json, pdf, svg};
 use clap::Args;
 use std::path::PathBuf;
@@ -15,8 +16,9 @@ pub struct Plot {
     /// The .sol.json of a solve
     #[arg(value_name = "SOLUTION")]
     solution: PathBuf,
-    /// What to draw: a state, a control, a path condition, a report, `costate(x)`, `multiplier(c)`
-    /// or `hamiltonian`; repeatable; all states and controls if left out
+    /// What to draw: a state, a control, a path condition, a report, a `plot` of the model,
+    /// `costate(x)`, `multiplier(c)` or `hamiltonian`; repeatable; all states and controls if left
+    /// out
     #[arg(long, value_name = "NAME")]
     signal: Vec<String>,
     /// Draw it over this signal instead of over the time
@@ -41,6 +43,10 @@ impl Plot {
         }
         let document = [Json::read(&self.solution)?];
         let all = figures(&document);
+        let portraits = portraits(&document, &all);
+        if let Some(asked) = self.asked(&portraits) {
+            return self.save(ending, &svg::portrait(&document[0], &all, asked));
+        }
         let wanted = self.wanted(&all)?;
         let picture = match (&self.over, &wanted[..]) {
             (None, wanted) => svg::over_time(&document[0], wanted),
@@ -49,10 +55,20 @@ impl Plot {
                 return Err(Failure::Usage("`--over` is for one `--signal`".into()));
             }
         };
+        self.save(ending, &picture)
+    }
+
+    fn save(&self, ending: &str, picture: &str) -> Result<(), Failure> {
         match ending {
-            "pdf" => files::write_file(&self.out, pdf::of(&picture)),
-            _ => files::write_file(&self.out, &picture),
+            "pdf" => files::write_file(&self.out, pdf::of(picture)),
+            _ => files::write_file(&self.out, picture),
         }
+    }
+
+    /// The only thing that is to be drawn, if it is a picture of the model.
+    fn asked<'p>(&self, portraits: &'p [Portrait]) -> Option<&'p Portrait> {
+        let [name] = &self.signal[..] else { return None };
+        portraits.iter().find(|it| self.over.is_none() && it.name == *name)
     }
 
     fn wanted<'f>(&self, all: &'f [Figure]) -> Result<Vec<&'f Figure>, Failure> {

@@ -20,6 +20,7 @@ pub mod number;
 pub mod optimality;
 pub mod phases;
 pub mod picture;
+pub mod plots;
 pub mod reach;
 pub mod rows;
 pub mod sarif;

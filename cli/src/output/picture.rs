@@ -2,6 +2,7 @@
 //! bounds, and the text that was solved.
 
 use super::named::Named;
+use super::plots::{Drawn, drawn};
 use super::units::{Shown, Units};
 use fdcc::{CostatesBefore, Solution};
 use fdcc_runtime::problem::{Bounds, Problem, Variable};
@@ -38,6 +39,9 @@ pub struct Picture {
     /// after them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub costates_before: Vec<Before>,
+    /// What the model says is to be drawn.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub plots: Named<Drawn>,
     /// The text of the model.
     pub source: String,
 }
@@ -50,6 +54,7 @@ impl Picture {
             bounds: all_bounds(&found.problem),
             path: found.path_conditions().into_iter().map(condition).collect(),
             costates_before: found.costates_before().into_iter().map(Before::from).collect(),
+            plots: drawn(found.plots()),
             source: found.model().source().text.to_string(),
         }
     }

@@ -2,6 +2,7 @@
 
 use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
+use super::plots::{Drawn, drawn};
 use super::units::{Shown, Units};
 use crate::version::VERSION;
 use fdcc::{Model, Simulation};
@@ -20,6 +21,8 @@ pub struct SimulationDocument {
     units: Units,
     #[serde(skip_serializing_if = "Named::is_empty")]
     display_units: Named<Shown>,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    plots: Named<Drawn>,
     source: String,
 }
 
@@ -66,6 +69,7 @@ impl SimulationDocument {
             model: simulated.system.name.clone(),
             run: RunEntry::new(simulated, model.source()),
             display_units: Units::from(model).shown(),
+            plots: drawn(simulated.plots(model)),
             units: model.into(),
             source: model.source().text.to_string(),
         }

@@ -44,7 +44,7 @@ fn is_stepped(curve: &Curve) -> bool {
 }
 
 /// What stands under some keys.
-fn under<'j>(document: &'j Json, keys: &[String]) -> &'j Json {
+pub fn under<'j>(document: &'j Json, keys: &[String]) -> &'j Json {
     keys.iter().fold(document, |json, key| json.at(key))
 }
 

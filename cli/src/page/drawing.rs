@@ -2,6 +2,7 @@
 
 use super::figures::{Figure, figures, parts};
 use super::json::Json;
+use super::plots::{Portrait, portraits};
 use super::strips::{Strip, strips};
 use super::units::{Unit, of_time};
 use serde::Serialize;
@@ -15,6 +16,8 @@ pub struct Drawing {
     /// The first and the last time, as shown.
     range: [f64; 2],
     pub figures: Vec<Figure>,
+    /// The pictures that the model asks for.
+    pub portraits: Vec<Portrait>,
     /// For each document.
     pub strips: Vec<Vec<Strip>>,
     /// Of the only document.
@@ -41,11 +44,13 @@ impl Drawing {
     pub fn new(documents: &[Json], names: &[&str]) -> Self {
         let Unit { name: unit, si } = of_time(&documents[0]);
         let label = if unit.is_empty() { "t".to_owned() } else { format!("t [{unit}]") };
+        let figures = figures(documents);
         Drawing {
+            portraits: portraits(documents, &figures),
             names: names.iter().map(|it| (*it).to_owned()).collect(),
             time: Time { name: "t", label, unit, si },
             range: times(documents).map(|time| time / si),
-            figures: figures(documents),
+            figures,
             strips: (0..documents.len()).map(|of| strips(documents, of)).collect(),
             marks: if let [only] = documents { marks(only) } else { Vec::new() },
         }

@@ -2,6 +2,7 @@
 //! limits. A description holds no numbers of curves; it says where they stand.
 
 use super::json::{Json, NULL};
+use super::plots;
 use super::units::{Unit, of_condition, of_time, of_value, per};
 use serde::Serialize;
 
@@ -34,7 +35,7 @@ impl Figure {
 }
 
 /// A column of a document over another one.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub struct Curve {
     pub label: String,
     /// Which of the documents.
@@ -44,6 +45,9 @@ pub struct Curve {
     pub time: Vec<String>,
     /// The keys that lead to the values.
     pub values: Vec<String>,
+    /// Its colour, where several signals are in one plot.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hue: Option<usize>,
 }
 
 /// How a column is drawn.
@@ -76,13 +80,14 @@ const GROUPS: &[Group] = &[
     Group { title: STATES, key: "states", kind: Kind::Line },
     Group { title: CONTROLS, key: "controls", kind: Kind::Steps },
     Group { title: PATH, key: "path", kind: Kind::Line },
-    Group { title: "Reported", key: "report", kind: Kind::Line },
+    Group { title: REPORTED, key: "report", kind: Kind::Line },
     Group { title: COSTATES, key: "costates", kind: Kind::Line },
     Group { title: MULTIPLIERS, key: "path_multipliers", kind: Kind::Steps },
 ];
 pub const STATES: &str = "States";
-const CONTROLS: &str = "Controls";
+pub const CONTROLS: &str = "Controls";
 const PATH: &str = "Path conditions";
+pub const REPORTED: &str = "Reported";
 pub const COSTATES: &str = "Costates";
 const MULTIPLIERS: &str = "Multipliers of path conditions";
 pub const HAMILTONIAN: &str = "Hamiltonian";
@@ -141,16 +146,17 @@ pub fn figures(documents: &[Json]) -> Vec<Figure> {
         let (time, values) = (part.keys(&["time"]), part.keys(&["hamiltonian"]));
         let (label, of, kind) = (label(part), part.of, Kind::Steps);
         let figure = figure(&mut figures, HAMILTONIAN, HAMILTONIAN, unit);
-        figure.curves.push(Curve { label, of, kind, time, values });
+        figure.curves.push(Curve { label, of, kind, time, values, hue: None });
     }
     for part in parts.iter().filter(|part| !part.json.at("plant").is_absent()) {
         for name in ["iterations", "seconds"] {
             let (label, of, kind) = (label(part), part.of, Kind::Steps);
             let (time, values) = (part.keys(&["time"]), part.keys(&[name]));
             let figure = figure(&mut figures, WORK, name, || of_value(&NULL, name));
-            figure.curves.push(Curve { label, of, kind, time, values });
+            figure.curves.push(Curve { label, of, kind, time, values, hue: None });
         }
     }
+    figures.extend(plots::over_time(documents, &figures));
     figures
 }
 
@@ -185,7 +191,7 @@ fn curve(part: &Part, group: &Group, name: &str) -> Curve {
     } else {
         (group.kind, part.keys(&["time"]), part.keys(&[group.key, name]))
     };
-    Curve { label: label(part), of: part.of, kind, time, values }
+    Curve { label: label(part), of: part.of, kind, time, values, hue: None }
 }
 
 /// What a state does in the replay, if there was one.
@@ -199,6 +205,7 @@ fn replay(part: &Part, group: &Group, name: &str) -> Option<Curve> {
         kind: Kind::Replay,
         time: keys(&["time"]),
         values: keys(&["states", name]),
+        hue: None,
     })
 }
 

@@ -11,6 +11,7 @@ mod headline;
 pub mod json;
 pub mod notebook;
 pub mod pdf;
+pub mod plots;
 mod runs;
 mod sections;
 mod strips;

@@ -3,6 +3,7 @@
 use super::drawing::Drawing;
 use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, STATES};
 use super::json::Json;
+use super::plots::PLOTS;
 use super::tags::{escape, section};
 
 /// What stays in sight while reading: which line is which, the time at the cursor.
@@ -32,9 +33,13 @@ pub fn pictures(drawing: &Drawing) -> String {
     if !rows.is_empty() {
         sections += &section("What holds when", &format!("<div class=\"plots\">\n{rows}</div>\n"));
     }
+    sections += &asked(drawing);
     for group in drawing.figures.chunk_by(|a, b| a.group == b.group) {
         let first = drawing.figures.iter().position(|it| it.group == group[0].group);
         let first = first.expect("it is one of them");
+        if group[0].group == PLOTS {
+            continue;
+        }
         let figures = group.iter().enumerate().map(|(at, figure)| time_figure(figure, first + at));
         let figures = format!("<div class=\"plots\">\n{}</div>\n", figures.collect::<String>());
         sections += &section(heading(group[0].group), &figures);
@@ -43,6 +48,26 @@ pub fn pictures(drawing: &Drawing) -> String {
         }
     }
     sections
+}
+
+/// The pictures that the model asks for.
+fn asked(drawing: &Drawing) -> String {
+    let over_time = drawing.figures.iter().enumerate().filter(|it| it.1.group == PLOTS);
+    let over_time = over_time.map(|(at, figure)| time_figure(figure, at));
+    let wide = if drawing.portraits.len() == 1 { " class=\"wide\"" } else { "" };
+    let portraits = drawing.portraits.iter().enumerate().map(|(at, it)| {
+        format!(
+            "<figure{wide}><figcaption>{} <button type=\"button\" class=\"play\">play</button>\
+             <span class=\"legend\"></span></figcaption>\n\
+             <div class=\"plot\" data-asked=\"{at}\"></div></figure>\n",
+            escape(&it.name)
+        )
+    });
+    let all: String = portraits.chain(over_time).collect();
+    match all.is_empty() {
+        true => all,
+        false => section(PLOTS, &format!("<div class=\"plots\">\n{all}</div>\n")),
+    }
 }
 
 fn heading(group: &str) -> &str {
@@ -65,11 +90,27 @@ fn time_figure(figure: &Figure, at: usize) -> String {
     let unit = &figure.unit.name;
     let unit = if unit.is_empty() { String::new() } else { format!("[{}]", escape(unit)) };
     format!(
-        "<figure><figcaption>{} <span class=\"unit\">{unit}</span><output></output></figcaption>\n\
+        "<figure><figcaption>{} <span class=\"unit\">{unit}</span>\
+         <span class=\"legend\">{}</span><output></output></figcaption>\n\
          <div class=\"plot\" data-figure=\"{at}\"></div></figure>\n",
-        escape(&figure.name)
+        escape(&figure.name),
+        legend(figure)
     )
 }
+
+/// Which colour is which signal.
+fn legend(figure: &Figure) -> String {
+    let mut named: Vec<(usize, &str)> =
+        figure.curves.iter().filter_map(|it| Some((it.hue?, &it.label[..]))).collect();
+    named.dedup();
+    let key = |(hue, label): (usize, &str)| {
+        format!("<span class=\"key key-{}\">{}</span>", hue % HUES, escape(label))
+    };
+    named.into_iter().map(key).collect()
+}
+
+/// How many colours there are.
+const HUES: usize = 8;
 
 /// One signal over another, where there are two.
 fn portrait(drawing: &Drawing) -> String {

@@ -1,10 +1,11 @@
 //! Plots of a solution for papers, as SVG: the same figures as those of its page, drawn by
 //! plotters.
 
-use super::curves::{Piece, pieces, range};
+use super::curves::{Piece, pieces, range, under};
 use super::drawing::times;
-use super::figures::{Figure, Kind};
+use super::figures::{Curve, Figure, Kind};
 use super::json::Json;
+use super::plots::Portrait;
 use super::strips::strips;
 use super::units::{Unit, of_time};
 use crate::output::number::significant;
@@ -19,8 +20,12 @@ const TALL: i32 = 400;
 const LEFT: i32 = 64;
 const BELOW: i32 = 40;
 const FONT: i32 = 13;
+const MARGIN: i32 = 10;
 
 pub(super) const PLAN: RGBColor = RGBColor(31, 95, 168);
+/// Of several signals in one plot: those of the page.
+const HUES: [RGBColor; 4] =
+    [PLAN, RGBColor(194, 65, 12), RGBColor(20, 113, 61), RGBColor(124, 58, 237)];
 const REPLAY: RGBColor = RGBColor(194, 65, 12);
 pub(super) const LIMIT: RGBColor = RGBColor(179, 38, 30);
 pub(super) const HELD: RGBColor = RGBColor(226, 160, 18);
@@ -43,6 +48,8 @@ struct Plot {
     limits: Vec<f64>,
     /// Spans of the first axis that are coloured.
     shaded: Vec<[f64; 2]>,
+    /// Lines behind which a condition is violated.
+    borders: Vec<Piece>,
 }
 
 /// Figures of a document over time, one below the other.
@@ -52,44 +59,91 @@ pub fn over_time(document: &Json, figures: &[&Figure]) -> String {
     let plot = |figure: &&Figure| {
         let curves = curves(document, figure);
         let limits: Vec<f64> = figure.limits.iter().map(|it| it.value / figure.unit.si).collect();
-        let points = || curves.iter().flat_map(|(_, pieces)| pieces.iter().flatten());
+        let points = || curves.iter().flat_map(|(_, _, pieces)| pieces.iter().flatten());
         Plot {
             titles: [titled("t", &time), titled(&figure.signal(), &figure.unit)],
             ranges: [across, range(points().map(|it| it.1), &limits)],
             limits,
             shaded: held(document, time.si),
+            borders: Vec::new(),
             curves,
         }
     };
     drawn(&figures.iter().map(plot).collect::<Vec<_>>(), HEIGHT)
 }
 
-/// The pieces of a curve between its jumps, and what it is of.
-type Traced = (Kind, Vec<Piece>);
+/// How a curve is drawn, its colour, and its pieces between its jumps.
+type Traced = (Kind, usize, Vec<Piece>);
 
 /// One figure over another.
 pub fn over_another(document: &Json, of: &Figure, over: &Figure) -> String {
-    let [ys, xs] = [of, over].map(|figure| curves(document, figure));
-    let paired = |((kind, ys), (_, xs)): (&Traced, &Traced)| {
-        let pairs = xs.iter().zip(ys);
-        let piece =
-            |(xs, ys): (&Piece, &Piece)| xs.iter().zip(ys).map(|(x, y)| (x.1, y.1)).collect();
-        (*kind, pairs.map(piece).collect())
-    };
-    let curves: Vec<Traced> = ys.iter().zip(&xs).map(paired).collect();
-    let points = || curves.iter().flat_map(|(_, pieces)| pieces.iter().flatten());
-    let plot = Plot {
-        titles: [titled(&over.signal(), &over.unit), titled(&of.signal(), &of.unit)],
-        ranges: [range(points().map(|it| it.0), &[]), range(points().map(|it| it.1), &[])],
-        limits: Vec::new(),
-        shaded: Vec::new(),
-        curves,
-    };
+    drawn(&[plane(document, &[of], over)], TALL)
+}
+
+/// A picture that the model asks for, with its borders.
+pub fn portrait(document: &Json, figures: &[Figure], asked: &Portrait) -> String {
+    let of: Vec<&Figure> = asked.of.iter().map(|at| &figures[*at]).collect();
+    let over = &figures[asked.over];
+    let mut plot = plane(document, &of, over);
+    let [x, y] = [over.unit.si, of[0].unit.si];
+    let point =
+        |it: &Json| Some((it.list().first()?.number()? / x, it.list().get(1)?.number()? / y));
+    let segment = |it: &Json| it.list().iter().filter_map(point).collect::<Piece>();
+    for (_, keys) in &asked.borders {
+        plot.borders.extend(under(document, keys).list().iter().map(segment));
+    }
+    if asked.is_to_scale {
+        plot.ranges = to_scale(plot.ranges);
+    }
+    let [[left, right], [low, high]] = plot.ranges;
+    let is_inside = |(x, y): &(f64, f64)| left < *x && *x < right && low < *y && *y < high;
+    plot.borders.retain(|piece| piece.iter().all(is_inside));
     drawn(&[plot], TALL)
 }
 
+/// The ranges in which one unit is as long on both axes.
+fn to_scale(ranges: [[f64; 2]; 2]) -> [[f64; 2]; 2] {
+    let pixels = [WIDTH - LEFT - 2 * MARGIN, TALL - BELOW - 2 * MARGIN].map(f64::from);
+    let size = |axis: usize| (ranges[axis][1] - ranges[axis][0]) / pixels[axis];
+    let largest = size(0).max(size(1));
+    [0, 1].map(|axis| {
+        let middle = 0.5 * (ranges[axis][0] + ranges[axis][1]);
+        let half = 0.5 * largest * pixels[axis];
+        [middle - half, middle + half]
+    })
+}
+
+/// Figures over another one.
+fn plane(document: &Json, of: &[&Figure], over: &Figure) -> Plot {
+    let xs = curves(document, over);
+    let paired = |((kind, _, ys), (_, _, xs)): (&Traced, &Traced), hue: usize| {
+        let pairs = xs.iter().zip(ys);
+        let piece =
+            |(xs, ys): (&Piece, &Piece)| xs.iter().zip(ys).map(|(x, y)| (x.1, y.1)).collect();
+        (*kind, hue, pairs.map(piece).collect())
+    };
+    let all = of.iter().enumerate().map(|(hue, figure)| {
+        let ys = curves(document, figure);
+        ys.iter().zip(&xs).map(|pair| paired(pair, hue)).collect::<Vec<Traced>>()
+    });
+    let curves: Vec<Traced> = all.flatten().collect();
+    let points = || curves.iter().flat_map(|(_, _, pieces)| pieces.iter().flatten());
+    let title = of.iter().map(|it| titled(&it.signal(), &it.unit)).collect::<Vec<_>>().join(", ");
+    Plot {
+        titles: [titled(&over.signal(), &over.unit), title],
+        ranges: [range(points().map(|it| it.0), &[]), range(points().map(|it| it.1), &[])],
+        limits: Vec::new(),
+        shaded: Vec::new(),
+        borders: Vec::new(),
+        curves,
+    }
+}
+
 fn curves(document: &Json, figure: &Figure) -> Vec<Traced> {
-    figure.curves.iter().map(|curve| (curve.kind, pieces(document, figure, curve))).collect()
+    let traced = |curve: &Curve| {
+        (curve.kind, curve.hue.unwrap_or_default(), pieces(document, figure, curve))
+    };
+    figure.curves.iter().map(traced).collect()
 }
 
 fn titled(name: &str, unit: &Unit) -> String {
@@ -139,11 +193,14 @@ impl Plot {
         for limit in self.limits.iter().filter(|it| (low..=high).contains(*it)) {
             dashed(&mut chart, &[(left, *limit), (right, *limit)], LIMIT)?;
         }
-        for (kind, pieces) in &self.curves {
+        for border in &self.borders {
+            line(&mut chart, border, LIMIT)?;
+        }
+        for (kind, hue, pieces) in &self.curves {
             for piece in pieces {
                 match kind {
                     Kind::Replay => dashed(&mut chart, piece, REPLAY)?,
-                    _ => line(&mut chart, piece, PLAN)?,
+                    _ => line(&mut chart, piece, HUES[hue % HUES.len()])?,
                 }
             }
         }
@@ -158,7 +215,7 @@ pub(super) fn chart<'a, 'b>(
     [[left, right], [low, high]]: [[f64; 2]; 2],
 ) -> Result<Chart<'a, 'b>, Failed> {
     ChartBuilder::on(area)
-        .margin(10 * FINE)
+        .margin(MARGIN * FINE)
         .x_label_area_size(BELOW * FINE)
         .y_label_area_size(LEFT * FINE)
         .build_cartesian_2d(left..right, low..high)

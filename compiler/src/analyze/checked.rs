@@ -37,10 +37,15 @@ pub fn check(tree: &ast::Model) -> Checked {
 
 /// The same with the texts of data files; without them a model with data waits for them.
 pub fn check_with(tree: &ast::Model, files: Option<&Files>) -> Checked {
+    check_given(tree, files, None)
+}
+
+/// The same, where signals are given from outside on so many equal intervals of time.
+pub fn check_given(tree: &ast::Model, files: Option<&Files>, intervals: Option<usize>) -> Checked {
     let mut unread = Vec::new();
     let tables =
         files.map_or_else(Tables::new, |files| data::read(&tree.items, files, &mut unread));
-    let mut found = check_tables(tree, &tables);
+    let mut found = check_tables(tree, &tables, intervals);
     if !unread.is_empty() {
         found.model = None;
         found.diagnostics.retain(|it| it.code != Code::NotYet);
@@ -50,7 +55,7 @@ pub fn check_with(tree: &ast::Model, files: Option<&Files>) -> Checked {
     found
 }
 
-fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
+fn check_tables(tree: &ast::Model, tables: &Tables, intervals: Option<usize>) -> Checked {
     let mut diagnostics = Vec::new();
     let (tree, written) = (&*written_out(tree, &mut diagnostics), tree);
     let everything: Vec<&Item> = tree.items.iter().collect();
@@ -66,7 +71,7 @@ fn check_tables(tree: &ast::Model, tables: &Tables) -> Checked {
         not_yet.append(&mut part.not_yet);
         inner.push(Inner::new(phase.name, part));
     }
-    let mut whole = resolve(&everything, inner, &units.readings, tables);
+    let mut whole = resolve(&everything, inner, &units.readings, tables, intervals);
     diagnostics.extend(checked(&mut whole, everything, tree, None));
     whole.not_yet.append(&mut not_yet);
     diagnostics.extend(checks::unused(tree));

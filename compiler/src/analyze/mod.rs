@@ -11,7 +11,7 @@ mod unseen;
 use crate::data::Files;
 use crate::model::Model;
 use crate::units::NamedUnit;
-pub use checked::{Checked, check, check_with};
+pub use checked::{Checked, check, check_given, check_with};
 use fdcc_grammar::ast;
 use fdcc_grammar::{Code, Diagnostic, Parse, ParseCache, SourceFile, parse_with};
 use unparsed::UnparsedRegions;

@@ -35,6 +35,19 @@ pub(crate) fn curve(
     chosen(graph, times, &pieces, at)
 }
 
+/// The broken line through values at 0, 1, 2, ...; it goes on beyond its ends.
+pub(crate) fn broken_line(graph: &mut Graph, values: &[ExprId], at: ExprId) -> ExprId {
+    let mut pieces = Vec::new();
+    for (begin, pair) in values.windows(2).enumerate() {
+        let (change, begin) = (graph.sub(pair[1], pair[0]), graph.number(begin as f64));
+        let way = graph.sub(at, begin);
+        let part = graph.mul(change, way);
+        pieces.push(graph.add(pair[0], part));
+    }
+    let borders: Vec<f64> = (1..pieces.len()).map(|it| it as f64).collect();
+    chosen(graph, &borders, &pieces, at)
+}
+
 /// The polynomial between two neighbours, over the way from the first of them.
 fn piece(
     graph: &mut Graph,

@@ -33,6 +33,16 @@ pub struct Param {
     pub range: Range,
 }
 
+/// A component of a `signal`.
+#[derive(Clone, Debug)]
+pub struct Signal {
+    /// Its declaration.
+    pub place: Place,
+    /// The parameters that are its values at points of equal distance, where a controller is given
+    /// them; none where it is what the text says.
+    pub points: Vec<usize>,
+}
+
 /// A `free` unknown.
 #[derive(Clone, Debug)]
 pub struct Free {

@@ -18,6 +18,8 @@ mod measured;
 pub(crate) mod numbers;
 mod overrides;
 pub(crate) mod phases;
+mod plots;
+mod signals;
 mod switches;
 mod unsolved;
 
@@ -25,7 +27,7 @@ pub use along::Along;
 pub(crate) use at_times::{Instant, between_times};
 pub use declarations::{
     AtTime, Ball, Constraint, Control, Definition, Free, Integral, Jump, Param, Place, Range,
-    State, Surface, Swept,
+    Signal, State, Surface, Swept,
 };
 pub use measured::Sum;
 pub(crate) use measured::by_row;
@@ -39,6 +41,7 @@ pub use expected::{Comparison, Expectation, Report, Simulated};
 use fdcc_grammar::{Code, Diagnostic, Span};
 use fdcc_runtime::problem::Method;
 pub use phases::{Link, Phase};
+pub use plots::{Border, Plane, Plot};
 
 /// What an input of the model's graph stands for. The numbers are indices into the lists of
 /// [`Model`].
@@ -96,6 +99,11 @@ pub struct Model {
     pub params: Vec<Param>,
     /// Parameters in an order in which each needs only earlier ones.
     pub param_order: Vec<usize>,
+    /// Quantities that are given from outside.
+    pub signals: Vec<Signal>,
+    /// The parameter that is added to the time at which signals have the values of the text, where
+    /// they have points.
+    pub signal_time: Option<usize>,
     /// Unknowns.
     pub frees: Vec<Free>,
     /// States.
@@ -132,6 +140,8 @@ pub struct Model {
     pub widths: Vec<(Span, ExprId)>,
     /// What is reported.
     pub report: Vec<Report>,
+    /// Pictures of the answer.
+    pub plots: Vec<Plot>,
     /// What expectations ask of a simulation.
     pub simulated: Vec<Simulated>,
     /// What is expected.
@@ -176,6 +186,8 @@ impl Model {
             symbols: Vec::new(),
             params: Vec::new(),
             param_order: Vec::new(),
+            signals: Vec::new(),
+            signal_time: None,
             frees: Vec::new(),
             states: Vec::new(),
             controls: Vec::new(),
@@ -194,6 +206,7 @@ impl Model {
             sums: Vec::new(),
             widths: Vec::new(),
             report: Vec::new(),
+            plots: Vec::new(),
             simulated: Vec::new(),
             expectations: Vec::new(),
             metric: Vec::new(),

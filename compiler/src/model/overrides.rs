@@ -103,7 +103,7 @@ impl Model {
         self.units.iter().find(|own| own.span == span)
     }
 
-    fn give(&mut self, index: usize, value: f64) {
+    pub(super) fn give(&mut self, index: usize, value: f64) {
         self.phases.iter_mut().for_each(|phase| phase.model.give(index, value));
         let before = self.params[index].value.replace(self.graph.number(value));
         if before.is_none() {

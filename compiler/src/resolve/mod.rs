@@ -21,13 +21,16 @@ use fdcc_grammar::Diagnostic;
 use fdcc_grammar::ast::{Assignment, Item, ItemKind};
 
 /// Resolves what stands outside of all phases, and reads of them what they turned out to mean.
+/// Signals are what the text says, or given on so many intervals.
 pub(crate) fn resolve<'a>(
     items: &[&'a Item],
     phases: Vec<Inner<'a>>,
     readings: &'a Readings,
     tables: &'a Tables,
+    intervals: Option<usize>,
 ) -> Elaborator<'a> {
     let mut elaborator = declared(items, readings, tables);
+    elaborator.intervals = intervals;
     items.iter().for_each(|item| units::unknown(item, &mut elaborator.diagnostics));
     elaborator.phases = phases;
     elaborator.declare_all();
@@ -91,6 +94,7 @@ fn is_of_each_phase(item: &Item) -> bool {
             | ItemKind::Metric { .. }
             | ItemKind::Guess { .. }
             | ItemKind::Report { .. }
+            | ItemKind::Plot { .. }
             | ItemKind::Method { .. }
     )
 }

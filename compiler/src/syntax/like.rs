@@ -216,7 +216,9 @@ fn replaces(later: &Item, item: &Item) -> bool {
 /// The name of an item by which it is replaced.
 fn named(item: &Item) -> Option<&str> {
     let own = match &item.kind {
-        ItemKind::Jump { name, .. } | ItemKind::Path { name: Some(name), .. } => Some(name),
+        ItemKind::Jump { name, .. }
+        | ItemKind::Path { name: Some(name), .. }
+        | ItemKind::Plot { name, .. } => Some(name),
         _ => declared(item),
     };
     own.map(|name| name.name.as_str())

@@ -3,7 +3,7 @@
 //! A depth-first walk over "is mentioned in"; a mention of something that is still open closes a
 //! circle.
 
-use super::scope::Scope;
+use super::scope::{Declaration, Scope};
 use super::walk;
 use fdcc_grammar::ast::ItemKind;
 use fdcc_grammar::{Code, Diagnostic, Span};
@@ -86,7 +86,9 @@ fn mentioned(scope: &Scope<'_>, at: usize) -> Vec<(usize, Span)> {
         walk::names(value, &mut |name, span| needs.extend(scope.find(name).map(|at| (at, span))))
     };
     match &item.kind {
-        ItemKind::Let { value, .. } | ItemKind::Const { value, .. } => add(value),
+        ItemKind::Let { value, .. }
+        | ItemKind::Const { value, .. }
+        | ItemKind::Signal { value, .. } => add(value),
         ItemKind::Fn { body, .. } => add(body),
         ItemKind::Surface { value, .. } => add(value),
         ItemKind::Param { value: Some(value), .. } | ItemKind::Free { guess: Some(value), .. } => {
@@ -97,6 +99,12 @@ fn mentioned(scope: &Scope<'_>, at: usize) -> Vec<(usize, Span)> {
             add(&interval.upper);
         }
         _ => {}
+    }
+    if let ItemKind::Signal { name, .. } = &item.kind {
+        // Its points are spread over the whole time.
+        let is_time = |it: &Declaration<'_>| matches!(it.item.kind, ItemKind::Time { .. });
+        let time = scope.declarations.iter().position(is_time);
+        needs.extend(time.map(|at| (at, name.span)));
     }
     if let ItemKind::Fn { arguments, .. } = &item.kind {
         needs.retain(|need| {

@@ -85,6 +85,7 @@ fn mentioned(item: &Item) -> Vec<&str> {
         ItemKind::Metric { weights } => names.extend(weights.iter().map(|it| name(&it.0))),
         ItemKind::Guess { bindings } => names.extend(bindings.iter().map(|it| name(&it.name))),
         ItemKind::Fit { data, .. } => names.push(name(data)),
+        ItemKind::Plot { borders, .. } => names.extend(borders.iter().map(name)),
         ItemKind::Jump { surface, then_hold, assignments, .. } => {
             names.extend([surface].into_iter().chain(then_hold).map(name));
             names.extend(assignments.iter().map(|it| name(&it.name)));

@@ -125,6 +125,7 @@ pub(crate) fn declared(item: &Item) -> Option<&Ident> {
         ItemKind::Param { name, .. }
         | ItemKind::Const { name, .. }
         | ItemKind::Let { name, .. }
+        | ItemKind::Signal { name, .. }
         | ItemKind::Fn { name, .. }
         | ItemKind::Data { name, .. }
         | ItemKind::Free { name, .. }
@@ -143,6 +144,7 @@ pub(crate) fn kind_word(item: &Item) -> &'static str {
         ItemKind::Param { .. } => "parameter",
         ItemKind::Const { .. } => "constant",
         ItemKind::Let { .. } => "let",
+        ItemKind::Signal { .. } => "signal",
         ItemKind::Fn { .. } => "function",
         ItemKind::Data { .. } => "data set",
         ItemKind::Free { .. } => "free unknown",
@@ -169,6 +171,7 @@ pub(crate) fn unit(item: &Item) -> Option<&ast::Unit> {
         ItemKind::Param { unit, .. }
         | ItemKind::Const { unit, .. }
         | ItemKind::Let { unit, .. }
+        | ItemKind::Signal { unit, .. }
         | ItemKind::Free { unit, .. }
         | ItemKind::Time { unit, .. }
         | ItemKind::State { unit, .. }

@@ -99,6 +99,7 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
         }
         ItemKind::Const { value, .. }
         | ItemKind::Let { value, .. }
+        | ItemKind::Signal { value, .. }
         | ItemKind::Surface { value, .. } => all.push(value),
         ItemKind::Fn { body, .. } => all.push(body),
         ItemKind::Free { bounds, guess, .. } | ItemKind::Control { bounds, guess, .. } => {
@@ -146,6 +147,7 @@ pub(crate) fn expressions(item: &Item) -> Vec<&Expr> {
             ast::SettingValue::Scheme { .. } => {}
         }),
         ItemKind::Sweep { lists } => all.extend(lists.iter().flat_map(|list| &list.values)),
+        ItemKind::Plot { curves, over, .. } => all.extend(curves.iter().chain([over])),
         ItemKind::Expect { checks } => checks.iter().for_each(|it| {
             all.extend([&it.left, &it.right]);
             all.extend(&it.within);

@@ -62,6 +62,10 @@ impl Findings<'_, '_> {
                 ItemKind::Report { bindings } => all.extend(
                     bindings.iter().filter_map(|it| self.single(it.name.span, &it.name.name)),
                 ),
+                ItemKind::Plot { curves, over, .. } => {
+                    let drawn = curves.iter().chain([over]);
+                    all.extend(drawn.filter_map(|it| self.single(it.span, &text::expr(it))));
+                }
                 _ => all.extend(self.of_item(item)),
             }
         }

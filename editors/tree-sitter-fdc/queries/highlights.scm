@@ -13,7 +13,7 @@
 
 [
   ; words: clauses
-"csv" "columns" "on" "falling" "rising" "most" "then" "hold" "sd" "like" "same" "smooth" "kernel" "grid" "steps" "scheme" "lagged" "continue" "at" "fit"
+"csv" "columns" "on" "falling" "rising" "most" "then" "hold" "sd" "like" "same" "smooth" "kernel" "grid" "steps" "scheme" "lagged" "continue" "over" "with" "signal" "at" "fit" "plot"
 ] @keyword
 
 (start_free "free" @keyword)
@@ -26,6 +26,7 @@
 (parameter name: (name) @constant)
 (constant name: (name) @constant)
 (definition name: (name) @variable)
+(signal name: (name) @variable)
 (state name: (name) @variable)
 (control name: (name) @variable)
 (free name: (name) @variable)
@@ -39,6 +40,8 @@
 (jump surface: (name) @label)
 (jump name: (name) @label)
 (path name: (name) @label)
+(plot name: (name) @label)
+(border path: (name) @label)
 (phase name: (name) @label)
 (link (name) @label)
 (model name: (name) @label)

@@ -2,7 +2,7 @@
 
 use super::{DataFiles, Model};
 use crate::error::Error;
-use fdcc_compiler::{Analysis, Files, analyze_with, check_with_objective};
+use fdcc_compiler::{Analysis, Files, analyze_with, check_given, check_with_objective};
 use fdcc_grammar::{Code, Diagnostic, ParseCache, Severity, SourceFile, Span, parse};
 use std::string::FromUtf8Error;
 use std::sync::Arc;
@@ -87,6 +87,18 @@ impl Model {
         let files = self.files.clone();
         let found = Checked::new(self.source.clone(), checked.model, Vec::new(), files);
         Checked { diagnostics: Arc::new(checked.diagnostics), ..found }
+    }
+}
+
+impl Model {
+    /// The same, where signals are given from outside on so many equal intervals; all values stay.
+    pub(crate) fn with_given_signals(&self, intervals: usize) -> Result<Model, Error> {
+        let load = loader(self.files.as_ref());
+        let tree = parse(&self.source.text).tree;
+        let checked = check_given(&tree, load.as_deref(), Some(intervals));
+        let mut meaning = checked.model.ok_or(Error::Model(checked.diagnostics))?;
+        meaning.take_values(&self.meaning).map_err(Error::Model)?;
+        Ok(self.with_meaning(meaning))
     }
 }
 

@@ -75,6 +75,13 @@ impl Model {
         set.map_err(Error::Call)
     }
 
+    /// The same with a change of values alone: nothing is compiled anew.
+    pub(crate) fn with_values(&self, change: impl FnOnce(&mut fdcc_compiler::Model)) -> Model {
+        let mut model = self.clone();
+        change(Arc::make_mut(&mut model.meaning));
+        model
+    }
+
     /// The same with another value of a key of the `method` block; it is compiled anew, since
     /// schemes and kernels are part of the functions.
     ///

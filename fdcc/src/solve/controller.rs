@@ -35,8 +35,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// A model that cannot be solved, that has phases, jumps or conditions at times, or that names
-    /// no width of its layers.
+    /// A model that cannot be solved, that has phases, jumps or conditions at times, that names no
+    /// width of its layers, or that has signals and chooses its times.
     pub fn controller(&self, intervals: usize) -> Result<Controller, Error> {
         let model = self.with_method("N", intervals as f64)?;
         let meaning = model.meaning();
@@ -50,6 +50,11 @@ impl Model {
         if !meaning.surfaces.is_empty() && meaning.method.sigma.is_none() {
             return refuse("that names the width of its layers, as in `method { sigma = 0.05 }`");
         }
+        let model = match meaning.signals.is_empty() {
+            true => model,
+            false if meaning.chooses_times() => return refuse("with signals to fix its times"),
+            false => model.with_given_signals(intervals)?,
+        };
         Ok(Controller { compiled: model.compile()?, last: None })
     }
 }
@@ -83,6 +88,71 @@ impl Controller {
     /// Those of [`Model::with`].
     pub fn set(&mut self, name: &str, value: impl Into<Value>) -> Result<(), Error> {
         self.compiled = self.compiled.model().with(name, value)?.compile()?;
+        Ok(())
+    }
+
+    /// The names of the signals, each component by itself.
+    pub fn signals(&self) -> impl Iterator<Item = &str> {
+        self.model().meaning().signals.iter().map(|it| it.place.name.as_str())
+    }
+
+    /// Gives a signal its values from the next step on, in SI: one for each point of the grid, or
+    /// one for all of them. Between points it is a straight line.
+    ///
+    /// ```
+    /// let model = fdcc::Model::from_text("follow", "time t in [0, 1]
+    /// signal r = 0
+    /// state x start 0
+    /// control u in [-5, 5]
+    /// dynamics { x' = u }
+    /// minimize integral((x - r)^2 + 0.001 * u^2)")?;
+    /// let mut controller = model.controller(4)?;
+    /// controller.set_signal("r", &[0.0, 0.2, 0.4, 0.6, 0.8])?;
+    /// let plan = controller.step(&[0.0], &fdcc::Options::default())?;
+    /// assert!((plan.state("x").expect("it is declared")[2] - 0.4).abs() < 0.02);
+    /// # Ok::<(), fdcc::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// A name that is no signal; another number of values, or one that is not finite.
+    pub fn set_signal(&mut self, name: &str, values: &[f64]) -> Result<(), Error> {
+        let at = self.signal_at(name)?;
+        let wanted = self.model().meaning().signals[at].points.len();
+        let is_fine = values.len() == 1 || values.len() == wanted;
+        if !is_fine || values.iter().any(|value| !value.is_finite()) {
+            let message = format!("`{name}` takes 1 or {wanted} finite values, one for each point");
+            return Err(Error::Call(message));
+        }
+        let all = if values.len() == 1 { vec![values[0]; wanted] } else { values.to_vec() };
+        self.change(|meaning| meaning.give_signal(at, &all))
+    }
+
+    fn signal_at(&self, name: &str) -> Result<usize, Error> {
+        let names: Vec<&str> = self.signals().collect();
+        let message = || match names.is_empty() {
+            true => format!("`{name}` is no signal; the model has none"),
+            false => format!("`{name}` is no signal; signals are {}", names.join(", ")),
+        };
+        names.iter().position(|it| *it == name).ok_or_else(|| Error::Call(message()))
+    }
+
+    /// Signals that were not given have the values of the text from this time on, in SI, instead of
+    /// those from the first time on.
+    ///
+    /// # Errors
+    ///
+    /// A time that is not finite.
+    pub fn set_time(&mut self, now: f64) -> Result<(), Error> {
+        match now.is_finite() {
+            true if self.model().meaning().signals.is_empty() => Ok(()),
+            true => self.change(|meaning| meaning.set_signal_time(now)),
+            false => Err(Error::Call(format!("the time cannot be {now}"))),
+        }
+    }
+
+    fn change(&mut self, change: impl FnOnce(&mut fdcc_compiler::Model)) -> Result<(), Error> {
+        self.compiled = self.compiled.model().with_values(change).compile()?;
         Ok(())
     }
 

@@ -170,6 +170,7 @@ impl Marks {
             | Rule::method
             | Rule::sweep
             | Rule::report
+            | Rule::plot
             | Rule::expect
             | Rule::equation
             | Rule::check => Row::Alone,

@@ -55,6 +55,13 @@ def seconds(name: str, value: Any) -> float | None:
     return _checked(name, value, lambda it: it > 0, "a number of seconds above 0")
 
 
+def finite(name: str, value: Any) -> float | None:
+    """A number, if there is one."""
+    if value is None:
+        return None
+    return _checked(name, value, lambda it: abs(it) < np.inf, "a finite number")
+
+
 def tolerance(name: str, value: Any) -> float | None:
     """A relative tolerance, if there is one."""
     if value is None:

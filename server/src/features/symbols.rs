@@ -103,7 +103,10 @@ pub fn kind(kind: Kind) -> SymbolKind {
     match kind {
         Kind::Param | Kind::Const => SymbolKind::Constant,
         Kind::Function => SymbolKind::Function,
-        Kind::State | Kind::Control | Kind::Free | Kind::Time | Kind::Let => SymbolKind::Variable,
+        Kind::State | Kind::Control | Kind::Free | Kind::Time | Kind::Let | Kind::Signal => {
+            SymbolKind::Variable
+        }
+        Kind::Plot => SymbolKind::Object,
         Kind::Surface => SymbolKind::Interface,
         Kind::Jump => SymbolKind::Event,
         Kind::Path => SymbolKind::Boolean,

@@ -114,7 +114,7 @@ fn type_of_kind(kind: Kind) -> &'static str {
         Kind::Surface => "surface",
         Kind::Time => "time",
         Kind::Const => "constant",
-        Kind::Let | Kind::Report => "variable",
+        Kind::Let | Kind::Signal | Kind::Report | Kind::Plot => "variable",
         Kind::Function => "function",
         Kind::Argument | Kind::Row => "parameter",
         Kind::Part | Kind::Column => "property",

@@ -113,7 +113,8 @@ const STYLES = {
 function seriesOf(curve) {
   const isReplay = curve.kind === "replay";
   const own = { width: isReplay ? 1.5 : 2, points: { show: false }, paths: STYLES[curve.kind]() };
-  own.stroke = () => colour(`curve-${isReplay && solutions.length === 1 ? 1 : curve.of}`);
+  const hue = curve.hue === undefined ? curve.of : curve.hue % 8;
+  own.stroke = () => colour(`curve-${isReplay && solutions.length === 1 ? 1 : hue}`);
   if (isReplay) own.dash = [6, 4];
   return curve.pieces.map(() => own);
 }

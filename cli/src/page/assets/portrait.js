@@ -1,4 +1,4 @@
-// A phase portrait: one signal over another, chosen by the reader.
+// A phase portrait: one signal over another, chosen by the reader or by the model.
 function choices() {
   const all = page.figures.filter((figure) => ["States", "Reported"].includes(figure.group));
   return all.filter((figure) => figure.curves.some((curve) => curve.kind === "line"));
@@ -61,14 +61,54 @@ function drawEnds(chart, paths) {
   });
 }
 
-function drawPortrait(element, over, of, isToScale) {
-  const paths = paired(over, of);
+/// The pieces of the borders of path conditions, in the units of the axes.
+function drawBorders(chart, segments) {
+  const { ctx, bbox } = chart;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  ctx.beginPath();
+  for (const [from, to] of segments) {
+    ctx.moveTo(chart.valToPos(from[0], "x", true), chart.valToPos(from[1], "y", true));
+    ctx.lineTo(chart.valToPos(to[0], "x", true), chart.valToPos(to[1], "y", true));
+  }
+  ctx.strokeStyle = colour("limit");
+  ctx.lineWidth = 1.5 * uPlot.pxRatio;
+  ctx.setLineDash([]);
+  ctx.stroke();
+  ctx.restore();
+}
+
+/// Where the motion is at a time, as a dot on each path.
+function drawNow(chart, over, of, time) {
+  const { ctx } = chart;
+  for (const figure of of) {
+    for (const curve of figure.curves.filter((it) => it.kind !== "replay")) {
+      const other = over.curves.find((it) => it.of === curve.of && it.kind !== "replay");
+      const [x, y] = [[other, over], [curve, figure]].map(([it, { unit }]) =>
+        valueAt({ ...it, pieces: pieces(it, unit) }, time),
+      );
+      if (x === undefined || y === undefined) continue;
+      ctx.beginPath();
+      ctx.arc(chart.valToPos(x, "x", true), chart.valToPos(y, "y", true), 6 * uPlot.pxRatio, 0, 7);
+      ctx.fillStyle = colour("held");
+      ctx.fill();
+    }
+  }
+}
+
+/// Draws signals over another one. `more` may have pieces of borders, and a clock whose time is
+/// shown as a dot.
+function drawPortrait(element, over, of, isToScale, more = {}) {
+  const hued = (path, hue) => ({ ...path, curve: of.length > 1 ? { ...path.curve, hue } : path.curve });
+  const paths = of.flatMap((figure, hue) => paired(over, figure).map((path) => hued(path, hue)));
   const height = Math.round(Math.min(Math.max(element.clientWidth * 0.55, 260), 560));
   let [x, y] = ["x", "y"].map((key) => rangeOf(paths.flatMap((path) => path[key]), []));
   if (isToScale) [x, y] = toScale(x, y, element.clientWidth - AXIS, height - 40);
   element.replaceChildren();
   element.setAttribute("role", "img");
-  element.setAttribute("aria-label", `${of.name} over ${over.name}`);
+  element.setAttribute("aria-label", `${of.map((it) => it.name).join(", ")} over ${over.name}`);
   const titled = (figure) => figure.name + (figure.unit.name ? ` [${figure.unit.name}]` : "");
   const chart = new uPlot(
     {
@@ -83,13 +123,19 @@ function drawPortrait(element, over, of, isToScale) {
       },
       axes: [
         axis({ label: titled(over), labelSize: 18, size: 40, gap: 3, values: ticks }),
-        axis({ label: titled(of), labelSize: 18, size: AXIS - 12, values: ticks }),
+        axis({ label: of.map(titled).join(", "), labelSize: 18, size: AXIS - 12, values: ticks }),
       ],
       series: [
         {},
         ...paths.map(({ curve }) => ({ ...seriesOf({ ...curve, pieces: [0] })[0], paths: drawPath })),
       ],
-      hooks: { draw: [(own) => drawEnds(own, paths)] },
+      hooks: {
+        draw: [
+          (own) => drawBorders(own, more.borders ?? []),
+          (own) => drawEnds(own, paths),
+          (own) => more.clock?.isRunning && drawNow(own, over, of, more.clock.time),
+        ],
+      },
     },
     [null, ...paths.map((path) => [path.x, path.y])],
     element,
@@ -113,9 +159,49 @@ function portrait(element) {
       own.chart.destroy();
       charts.splice(charts.indexOf(own), 1);
     }
-    own = drawPortrait(element, figures[over.value], figures[of.value], isToScale.checked);
+    own = drawPortrait(element, figures[over.value], [figures[of.value]], isToScale.checked);
     charts.push(own);
   };
   [over, of, isToScale].forEach((input) => input.addEventListener("change", draw));
   draw();
+}
+
+const SECONDS = 6;
+
+/// Runs a clock through the whole time, and draws at each of its times.
+function play(clock, draw) {
+  const [first, last] = page.range;
+  const begin = performance.now();
+  const step = (now) => {
+    const passed = Math.min((now - begin) / 1000 / SECONDS, 1);
+    clock.isRunning = passed < 1;
+    clock.time = first + passed * (last - first);
+    document.getElementById("at").textContent = `${page.time.name} = ${short(clock.time)} ${page.time.unit}`;
+    draw();
+    if (clock.isRunning) requestAnimationFrame(step);
+  };
+  if (!clock.isRunning) requestAnimationFrame(step);
+}
+
+/// A picture that the model asks for.
+function asked(element) {
+  const { over, of, borders, is_to_scale } = page.portraits[element.dataset.asked];
+  const [x, ys] = [page.figures[over], of.map((it) => page.figures[it])];
+  const inUnits = (point) => [point[0] / x.unit.si, point[1] / ys[0].unit.si];
+  const all = borders.flatMap(([document, keys]) => at(document, keys) ?? []);
+  const clock = { isRunning: false };
+  const own = drawPortrait(element, x, ys, is_to_scale, {
+    clock,
+    borders: all.map((segment) => segment.map(inUnits)),
+  });
+  charts.push(own);
+  const caption = element.parentElement.querySelector("figcaption");
+  if (ys.length > 1) {
+    caption.querySelector(".legend").innerHTML = ys
+      .map((_, hue) => `<span class="key key-${hue % 8}"></span>`)
+      .join("");
+    caption.querySelectorAll(".key").forEach((key, hue) => (key.textContent = ys[hue].name));
+  }
+  const draw = () => own.chart.redraw(false, false);
+  caption.querySelector(".play").addEventListener("click", () => play(clock, draw));
 }

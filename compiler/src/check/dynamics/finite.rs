@@ -81,7 +81,7 @@ fn divides_by(meaning: &Elaborator<'_>, value: ExprId, divisor: ExprId) -> bool 
 fn definitions(meaning: &Elaborator<'_>) -> HashSet<ExprId> {
     let is_definition = |at: &usize| {
         let item = meaning.scope.declarations[*at].item;
-        matches!(item.kind, ItemKind::Const { .. } | ItemKind::Let { .. })
+        matches!(item.kind, ItemKind::Const { .. } | ItemKind::Let { .. } | ItemKind::Signal { .. })
     };
     let all = (0..meaning.values.len()).filter(is_definition);
     all.flat_map(|at| meaning.values[at].parts.as_slice()).copied().collect()

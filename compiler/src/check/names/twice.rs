@@ -26,6 +26,7 @@ enum Line {
     Path,
     Jump,
     Report,
+    Plot,
     Weight,
     Guess,
     Setting,
@@ -35,7 +36,7 @@ enum Line {
 impl Line {
     /// Whether a line outside of all phases stands beside those of each.
     fn is_of_each_phase(self) -> bool {
-        matches!(self, Line::Path | Line::Jump | Line::Report | Line::Weight)
+        matches!(self, Line::Path | Line::Jump | Line::Report | Line::Plot | Line::Weight)
     }
 
     /// What is wrong with a second one, behind the name, and what to do.
@@ -44,6 +45,7 @@ impl Line {
             Line::Path => ("is the name of two path conditions", "rename one of them"),
             Line::Jump => ("is the name of two jumps", "rename one of them"),
             Line::Report => ("is reported twice", "rename one of them, or remove it"),
+            Line::Plot => ("is the name of two plots", "rename one of them"),
             Line::Weight => ("has two weights", "keep one of them"),
             Line::Guess => ("is guessed twice", "keep one of them"),
             Line::Setting => ("is set twice", "keep one of them"),
@@ -74,6 +76,7 @@ fn lines(item: &Item) -> Vec<(Line, &Ident)> {
         ItemKind::Report { bindings } => {
             bindings.iter().map(|it| (Line::Report, &it.name)).collect()
         }
+        ItemKind::Plot { name, .. } => vec![(Line::Plot, name)],
         ItemKind::Metric { weights } => weights.iter().map(|it| (Line::Weight, &it.0)).collect(),
         ItemKind::Guess { bindings } => bindings.iter().map(|it| (Line::Guess, &it.name)).collect(),
         ItemKind::Method { settings } => {

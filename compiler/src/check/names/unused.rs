@@ -23,6 +23,7 @@ pub(crate) fn check(tree: &ast::Model) -> Vec<Diagnostic> {
             kind,
             ItemKind::Guess { .. }
                 | ItemKind::Report { .. }
+                | ItemKind::Plot { .. }
                 | ItemKind::Sweep { .. }
                 | ItemKind::Expect { .. }
                 | ItemKind::Method { .. }
@@ -95,6 +96,7 @@ fn reached<'a>(
         match (&item.kind, declared(item)) {
             (
                 ItemKind::Let { .. }
+                | ItemKind::Signal { .. }
                 | ItemKind::Const { .. }
                 | ItemKind::Fn { .. }
                 | ItemKind::Surface { .. },

@@ -34,6 +34,7 @@ impl Context {
     }
 
     pub const DEFINITION: Context = Context::new("a definition", Reads::ALL);
+    pub const GIVEN: Context = Context::new("a signal", Reads::TIME.or(Reads::PARAM));
     pub const NUMBER: Context = Context::new("a constant", Reads::PARAM);
     pub const WIDTH: Context = Context::new("a width", Reads::PARAM);
     pub const BOUND: Context = Context { is_bound: true, ..Context::new("a bound", Reads::PARAM) };
@@ -48,6 +49,7 @@ impl Context {
     pub const PATH: Context = Context::new("a path constraint", SIGNAL);
     pub const INTEGRAND: Context = Context::new("an integral", SIGNAL.or(ANY_PHASE));
     pub const REPORT: Context = Context::new("a report", SIGNAL);
+    pub const PLOT: Context = Context::new("a plot", SIGNAL);
     pub const SURFACE: Context = Context::new("a surface", AT_AN_END);
     pub const AT_AN_END: Context =
         Context::new("a value at the start or the end", AT_AN_END.or(ANY_PHASE));

@@ -143,6 +143,8 @@ pub(crate) struct Elaborator<'a> {
     pub fits: Option<(Span, Vec<ExprId>)>,
     /// First and last time.
     pub interval: [ExprId; 2],
+    /// On how many equal intervals signals are given from outside, if they are.
+    pub intervals: Option<usize>,
     /// The phases, resolved before what stands outside of them.
     pub phases: Vec<Inner<'a>>,
     /// What names the components of what is read of phases.
@@ -193,6 +195,7 @@ impl<'a> Elaborator<'a> {
             usages: Vec::new(),
             fits: None,
             interval,
+            intervals: None,
             phases: Vec::new(),
             named_in_phases: Vec::new(),
             handed: Vec::new(),

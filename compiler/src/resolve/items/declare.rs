@@ -101,7 +101,7 @@ impl<'a> Elaborator<'a> {
     }
 
     /// No bounds.
-    fn everything(&mut self) -> Range {
+    pub(super) fn everything(&mut self) -> Range {
         Range {
             lower: self.graph.number(f64::NEG_INFINITY),
             upper: self.graph.number(f64::INFINITY),
@@ -119,16 +119,22 @@ impl<'a> Elaborator<'a> {
             }
             ItemKind::Let { value, .. } => {
                 let value = self.evaluate_in(Context::DEFINITION, value);
-                self.keep_definition(at, &[], &value.parts);
-                self.values[at] = value;
-                self.name_parts(at);
+                self.define_as(at, value);
             }
+            ItemKind::Signal { value, .. } => self.define_signal(at, value),
             ItemKind::Param { value: Some(value), .. } => self.define_param(at, value),
             ItemKind::Surface { value, name } => self.define_surface(at, name, value),
             ItemKind::Time { interval, .. } => self.time_interval(interval),
             ItemKind::Fn { name: _, arguments, body } => self.examine(at, arguments, body),
             _ => {}
         }
+    }
+
+    /// Gives a definition its value.
+    pub(super) fn define_as(&mut self, at: usize, value: Value) {
+        self.keep_definition(at, &[], &value.parts);
+        self.values[at] = value;
+        self.name_parts(at);
     }
 
     /// Notes what the components of a definition are called.

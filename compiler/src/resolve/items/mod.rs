@@ -6,7 +6,9 @@ mod declare;
 mod fit;
 mod guess;
 mod jumps;
+mod plots;
 mod settings;
+mod signals;
 mod sweep;
 
 use super::elaborator::context::Context;
@@ -26,6 +28,7 @@ impl<'a> Elaborator<'a> {
         items.iter().for_each(|item| self.item(item));
         self.add_fits();
         self.move_boundary();
+        self.plots(items);
         self.check_curves();
     }
 

@@ -45,6 +45,9 @@ fn own(item: &Item, phase: Option<usize>, names: &mut Names) {
         ItemKind::Path { name: Some(name), .. } => {
             entry(names, name, Kind::Path);
         }
+        ItemKind::Plot { name, .. } => {
+            entry(names, name, Kind::Plot);
+        }
         ItemKind::Report { bindings } => {
             for it in bindings {
                 declare(names, &it.name, Kind::Report, it.name.span.to(it.value.span), phase);
@@ -66,6 +69,7 @@ fn kind(item: &Item) -> Option<Kind> {
         ItemKind::Param { .. } => Kind::Param,
         ItemKind::Const { .. } => Kind::Const,
         ItemKind::Let { .. } => Kind::Let,
+        ItemKind::Signal { .. } => Kind::Signal,
         ItemKind::Free { .. } => Kind::Free,
         ItemKind::Time { .. } => Kind::Time,
         ItemKind::State { .. } => Kind::State,

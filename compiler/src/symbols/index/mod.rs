@@ -24,6 +24,8 @@ pub enum Kind {
     Const,
     /// `let`
     Let,
+    /// `signal`
+    Signal,
     /// `fn`
     Function,
     /// An argument of a `fn`.
@@ -54,6 +56,8 @@ pub enum Kind {
     Path,
     /// A line of a `report`.
     Report,
+    /// `plot`
+    Plot,
 }
 
 impl Kind {
@@ -64,6 +68,7 @@ impl Kind {
             Kind::Param => "parameter",
             Kind::Const => "constant",
             Kind::Let => "definition",
+            Kind::Signal => "signal",
             Kind::Function => "function",
             Kind::Argument => "argument",
             Kind::Data => "data set",
@@ -79,6 +84,7 @@ impl Kind {
             Kind::Jump => "jump",
             Kind::Path => "path constraint",
             Kind::Report => "report",
+            Kind::Plot => "plot",
         }
     }
 }

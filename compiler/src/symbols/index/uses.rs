@@ -24,8 +24,9 @@ type Known = HashMap<Option<usize>, HashMap<String, usize>>;
 
 fn known(names: &Names) -> Known {
     let mut known = Known::new();
-    let in_expressions =
-        |kind: Kind| !matches!(kind, Kind::Model | Kind::Jump | Kind::Path | Kind::Report);
+    let in_expressions = |kind: Kind| {
+        !matches!(kind, Kind::Model | Kind::Jump | Kind::Path | Kind::Report | Kind::Plot)
+    };
     for (at, it) in names.definitions.iter().enumerate().filter(|it| in_expressions(it.1.kind)) {
         known.entry(it.within).or_default().entry(it.name.clone()).or_insert(at);
     }
@@ -98,6 +99,7 @@ impl Walker<'_> {
                 equations.iter().for_each(|it| self.name(&it.state, Role::Write))
             }
             ItemKind::Fit { data, signals, .. } => self.fitted(data, signals),
+            ItemKind::Plot { borders, .. } => borders.iter().for_each(|it| self.border(it)),
             ItemKind::Metric { weights } => {
                 weights.iter().for_each(|it| self.name(&it.0, Role::Read))
             }
@@ -113,6 +115,18 @@ impl Walker<'_> {
                 false => self.name(&it.name, Role::Write),
             }),
             _ => {}
+        }
+    }
+
+    /// A border is a path condition of the phase, or of all.
+    fn border(&mut self, name: &Ident) {
+        let all = self.names.definitions.iter().enumerate().rev();
+        let is_meant = |it: &super::Definition| {
+            let is_seen = it.within.is_none() || it.within == self.phase;
+            it.kind == Kind::Path && it.name == name.name && is_seen
+        };
+        if let Some(at) = all.filter(|it| is_meant(it.1)).map(|it| it.0).next() {
+            self.add(name.span, Meaning::Declared(at), Role::Read);
         }
     }
 

@@ -66,7 +66,8 @@ impl<'a> Inference<'a> {
         let value = match &it.item.kind {
             ItemKind::Param { value: Some(value), unit, .. }
             | ItemKind::Const { value, unit, .. }
-            | ItemKind::Let { value, unit, .. } => self.defined(it, value, unit.as_ref()),
+            | ItemKind::Let { value, unit, .. }
+            | ItemKind::Signal { value, unit, .. } => self.defined(it, value, unit.as_ref()),
             ItemKind::Surface { value, .. } => {
                 let value = self.evaluate(value);
                 self.switches.extend(value.first().cloned());

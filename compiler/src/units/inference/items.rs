@@ -68,6 +68,12 @@ impl<'a> Inference<'a> {
                 let value = self.evaluate(&it.value);
                 self.values.insert(it.name.span, value);
             }),
+            ItemKind::Plot { curves, over, .. } => {
+                curves.iter().chain([over]).for_each(|it| {
+                    let value = self.evaluate(it);
+                    self.values.insert(it.span, value);
+                });
+            }
             ItemKind::Expect { checks } => checks.iter().for_each(|it| self.check(it)),
             ItemKind::Metric { weights } => self.metric(weights),
             ItemKind::Jump { at_most, assignments, .. } => {
@@ -316,7 +322,10 @@ fn authority(kind: &ItemKind) -> u8 {
         | ItemKind::Path { .. }
         | ItemKind::Jump { .. } => 1,
         ItemKind::Method { .. } | ItemKind::Sweep { .. } => 4,
-        ItemKind::Guess { .. } | ItemKind::Report { .. } | ItemKind::Expect { .. } => 3,
+        ItemKind::Guess { .. }
+        | ItemKind::Report { .. }
+        | ItemKind::Plot { .. }
+        | ItemKind::Expect { .. } => 3,
         _ => 2,
     }
 }

@@ -153,7 +153,8 @@ pub(crate) fn unit_of(item: &ast::Item) -> Option<&Unit> {
     let in_value = match &item.kind {
         ItemKind::Param { value: Some(value), .. }
         | ItemKind::Const { value, .. }
-        | ItemKind::Let { value, .. } => match &value.kind {
+        | ItemKind::Let { value, .. }
+        | ItemKind::Signal { value, .. } => match &value.kind {
             ExprKind::Quantity(_, unit) => Some(unit),
             ExprKind::Negate(inner) => match &inner.kind {
                 ExprKind::Quantity(_, unit) => Some(unit),

@@ -267,13 +267,14 @@ impl<'a> Repairs<'_, 'a> {
     }
 }
 
-/// Where the unit of a plain number would stand: behind its value, or behind the name of a `let`.
+/// Where the unit of a plain number would stand: behind its value, or behind the name of a `let` or
+/// a `signal`.
 fn unit_place(culprit: &Culprit<'_>) -> Option<u32> {
     match &culprit.item.kind {
         ItemKind::Param { value: Some(value), .. } | ItemKind::Const { value, .. } => {
             Some(value.span.end)
         }
-        ItemKind::Let { .. } => Some(culprit.name.span.end),
+        ItemKind::Let { .. } | ItemKind::Signal { .. } => Some(culprit.name.span.end),
         ItemKind::Free { bounds: Some(bounds), .. } => Some(bounds.span.end),
         _ => None,
     }
@@ -289,6 +290,9 @@ fn with_unit(culprit: &Culprit<'_>, unit: &str) -> Option<String> {
         ItemKind::Const { value, .. } => format!("const {name} = {}", text::expr(value)),
         ItemKind::Let { value, .. } => {
             return Some(format!("let {name} [{unit}] = {}", text::expr(value)));
+        }
+        ItemKind::Signal { value, .. } => {
+            return Some(format!("signal {name} [{unit}] = {}", text::expr(value)));
         }
         ItemKind::Free { bounds: Some(it), .. } => {
             format!("free {name} in [{}, {}]", text::expr(&it.lower), text::expr(&it.upper))

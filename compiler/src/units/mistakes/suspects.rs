@@ -124,7 +124,9 @@ fn definitions(tree: &ast::Model) -> HashMap<&str, Definition<'_>> {
 fn value_of(item: &Item) -> Option<&Expr> {
     match &item.kind {
         ItemKind::Param { value, .. } => value.as_ref(),
-        ItemKind::Const { value, .. } | ItemKind::Let { value, .. } => Some(value),
+        ItemKind::Const { value, .. }
+        | ItemKind::Let { value, .. }
+        | ItemKind::Signal { value, .. } => Some(value),
         ItemKind::Fn { body, .. } => Some(body),
         _ => None,
     }

@@ -175,6 +175,7 @@ variants! {
         Param { name, value, unit, bounds },
         Const { name, value, unit },
         Let { name, unit, value },
+        Signal { name, unit, value },
         Fn { name, arguments, body },
         Data { name, file, file_span, columns },
         Free { name, bounds, unit, guess },
@@ -197,6 +198,7 @@ variants! {
         Method { settings },
         Sweep { lists },
         Report { bindings },
+        Plot { name, curves, over, borders },
         Expect { checks },
     }
     SettingValue {

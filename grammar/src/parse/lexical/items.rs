@@ -3,9 +3,9 @@
 //! A file and a phase are split where an item word begins; a block such as `dynamics { ... }` where
 //! an entry begins. Item words are reserved, so they begin an item wherever the text before them is
 //! complete, and at the beginning of a line even inside brackets that somebody forgot to close.
-//! `start`, `end`, `guess` and `free` also stand inside items and need a closer look. `fit` and
-//! `at` may be names, and begin an item where no name could stand. A column of data may be called
-//! as an item word.
+//! `start`, `end`, `guess` and `free` also stand inside items and need a closer look. `fit`,
+//! `plot`, `signal` and `at` may be names, and begin an item where no name could stand. A column of
+//! data may be called as an item word.
 
 use std::ops::Range;
 
@@ -153,6 +153,7 @@ fn begins_item(so_far: &SoFar<'_, '_>, at: usize) -> bool {
         (Kind::Close, _) => outside,
         (Kind::Open, _) if token.text == "{" && outside => is_nameless_block(so_far, at),
         (Kind::Word, _) if so_far.is_in_unit(at) || names_a_column(so_far, at) => false,
+        (Kind::Word, _) if names_a_plot(so_far, at) => false,
         (Kind::Word, Some(word)) if word.item.is_some() => {
             if so_far.in_phase() {
                 return token.begins_line && matches!(token.text, "phase" | "link");
@@ -187,6 +188,12 @@ fn names_a_column(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     let begins_next = words::always_begins(next.text) || begins_soft(so_far, at + 1);
     let goes_on = matches!(next.text, "," | "[" | "}") || begins_next;
     so_far.follows_columns(at) && (goes_on || !so_far.tokens[at].begins_line)
+}
+
+/// Whether a plot is called as an item word: `plot path:`.
+fn names_a_plot(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let follows = at > so_far.head && so_far.tokens[at - 1].text == "plot";
+    follows && !so_far.tokens[at].begins_line && so_far.text(at + 1) == ":"
 }
 
 /// Whether a region may end with a token.
@@ -243,7 +250,7 @@ fn has_relation(so_far: &SoFar<'_, '_>, at: usize) -> bool {
 
 /// Whether an item begins with a word that may be a name.
 fn begins_soft(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    begins_fit(so_far, at) || begins_at(so_far, at)
+    begins_named(so_far, at) || begins_signal(so_far, at) || begins_at(so_far, at)
 }
 
 /// `at 1.5:`, with an expression before the colon, behind a text that is complete.
@@ -269,13 +276,30 @@ fn begins_at(so_far: &SoFar<'_, '_>, at: usize) -> bool {
     false
 }
 
-/// `fit obs:`, of which no other item can have a part.
-fn begins_fit(so_far: &SoFar<'_, '_>, at: usize) -> bool {
-    let is_name = |at: usize| {
-        let token = so_far.tokens[..so_far.end].get(at);
-        token.is_some_and(|it| it.kind == Kind::Word && words::reserved(it.text).is_none())
+/// `fit obs:` and `plot path:`, of which no other item can have a part.
+fn begins_named(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let is_named = match so_far.tokens[at].text {
+        "fit" => is_name(so_far, at + 1),
+        "plot" => at + 1 < so_far.end && so_far.tokens[at + 1].kind == Kind::Word,
+        _ => false,
     };
-    so_far.tokens[at].text == "fit" && is_name(at + 1) && so_far.text(at + 2) == ":"
+    is_named && so_far.text(at + 2) == ":"
+}
+
+/// `signal r =` and `signal r [m]`, outside of blocks, whose entries also begin with a name.
+fn begins_signal(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let is_in_block = so_far.open.contains(&"}") && !so_far.in_phase();
+    so_far.tokens[at].text == "signal"
+        && is_name(so_far, at + 1)
+        && matches!(so_far.text(at + 2), "=" | "[")
+        && !is_in_block
+        && can_begin(so_far, at)
+}
+
+/// Whether a token is a word that may be a name.
+fn is_name(so_far: &SoFar<'_, '_>, at: usize) -> bool {
+    let token = so_far.tokens[..so_far.end].get(at);
+    token.is_some_and(|it| it.kind == Kind::Word && words::reserved(it.text).is_none())
 }
 
 /// Whether a line begins with nearly an item word and a name, as in `stat v`. Two names side by

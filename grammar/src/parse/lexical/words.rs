@@ -54,6 +54,7 @@ pub const WORDS: &[Word] = &[
     item("param", "introduces a parameter", "p", "a parameter", "param m = 2.0 [kg]"),
     item("const", "introduces a constant", "c", "a constant", "const g = 9.81 [m/s^2]"),
     item("let", "gives an expression a name", "l", "a definition", "let drag = c * v^2"),
+    soft("signal", "introduces a signal", "a signal", "signal r [m] = sin(t)"),
     item("fn", "introduces a function", "f", "a function", "fn along(th) = (cos(th), sin(th))"),
     item("data", "introduces measurements", "samples", "a data set", "data obs = \
         csv(\"slider.csv\") columns t [s], x [m]"),
@@ -88,6 +89,7 @@ pub const WORDS: &[Word] = &[
     item("sweep", "lists values for several runs", "strokes", "a sweep", "sweep { sigma = 0.1, \
         0.05  N = 1000, 8000 }"),
     item("report", "lists curves to write out", "output", "a report", "report { power = F * v }"),
+    soft("plot", "introduces a picture", "a plot", "plot path: pos.y over pos.x"),
     item("expect", "lists what the answer must satisfy", "expected", "an expect block", "expect { \
         x(end) == 1 within 1e-6 }"),
     inner("in", "introduces a range or a set", "inside"),
@@ -141,6 +143,7 @@ pub fn inner_words(item: &str) -> &'static [&'static str] {
         "jump" => &["on", "falling", "rising", "at", "most", "then", "hold"],
         "data" => &["csv", "columns"],
         "fit" => &["sd"],
+        "plot" => &["over", "with"],
         "phase" => &["like"],
         "link" => &["same"],
         "method" => &["smooth", "kernel", "grid", "steps", "scheme", "lagged", "continue"],

@@ -105,6 +105,7 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::guard_relation], "a comparison", Some(PIECEWISE)),
     (&[Rule::becomes], "`=` or `in`", None),
     (&[Rule::kw_sd], "`sd` with a standard deviation", None),
+    (&[Rule::kw_over], "`over` with what lies on the other axis", None),
     (&[Rule::equals], "`=`", None),
     (&[Rule::assigns], "`:=`", None),
     (&[Rule::implies], "`=>`", Some(PIECEWISE)),

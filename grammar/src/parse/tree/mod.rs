@@ -91,6 +91,7 @@ impl Reader<'_> {
             Rule::path => self.path(pair),
             Rule::objective => self.objective(pair),
             Rule::fit => self.fit(pair),
+            Rule::plot => self.plot(pair),
             Rule::jump => self.jump(pair),
             Rule::link => self.link(pair),
             _ => self.declaration(pair),
@@ -106,6 +107,7 @@ impl Reader<'_> {
             }
             Rule::constant => ItemKind::Const { name, value: self.one(pair), unit },
             Rule::definition => ItemKind::Let { name, unit, value: self.one(pair) },
+            Rule::signal => ItemKind::Signal { name, unit, value: self.one(pair) },
             Rule::function => {
                 ItemKind::Fn { name, arguments: self.names(pair), body: self.one(pair) }
             }
@@ -191,6 +193,15 @@ impl Reader<'_> {
         };
         let signals = children(pair, Rule::fitted).map(&mut signal).collect();
         ItemKind::Fit { keyword: self.span(&keyword), data: ident(self, pair), signals }
+    }
+
+    fn plot(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {
+        let mut curves = self.expressions_in(pair);
+        let over = curves.pop().expect("a plot is over something");
+        let border = child(pair, Rule::border);
+        let borders = border.iter().flat_map(|it| children(it, Rule::name));
+        let borders = borders.map(|it| self.name(&it)).collect();
+        ItemKind::Plot { name: ident(self, pair), curves, over, borders }
     }
 
     fn jump(&mut self, pair: &Pair<'_, Rule>) -> ItemKind {

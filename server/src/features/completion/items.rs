@@ -121,6 +121,7 @@ const SNIPPETS: &[(&str, &str)] = &[
     ("param", "param ${1:p} = ${2:1}"),
     ("const", "const ${1:c} = ${2:1}"),
     ("let", "let ${1:name} = ${2:1}"),
+    ("signal", "signal ${1:r} = ${2:0}"),
     ("fn", "fn ${1:f}(${2:x}) = ${3:x}"),
     ("data", "data ${1:obs} = csv(\"${2:file.csv}\") columns ${3:t} [${4:s}], ${5:x}"),
     ("free", "free ${1:T} in [${2:0.1}, ${3:10}] guess ${4:1}"),
@@ -147,6 +148,7 @@ const SNIPPETS: &[(&str, &str)] = &[
     ("method", "method {\n  grid N = ${1:100} scheme ${2:implicit_euler}\n}"),
     ("sweep", "sweep {\n  ${1:sigma} = ${2:0.1, 0.05}\n}"),
     ("report", "report {\n  ${1:name} = ${2:x}\n}"),
+    ("plot", "plot ${1:path}: ${2:y} over ${3:x}"),
     ("expect", "expect {\n  ${1:x(end)} == ${2:0} within ${3:1e-6}\n}"),
 ];
 

@@ -88,6 +88,8 @@ fn after_word(place: &CursorContext<'_>, scope: &Scope) -> Option<Vec<Proposal>>
             taken(key).filter(|it: &Vec<Proposal>| !it.is_empty())
         }
         (_, "fit") if place.item == "fit" => Some(scope.proposals(|kind| kind == Kind::Data)),
+        (_, "with") if place.item == "plot" => Some(scope.proposals(|kind| kind == Kind::Path)),
+        (_, word @ ("signal" | "plot")) if place.item == word => Some(Vec::new()),
         (_, "metric") => Some(scope.proposals(|kind| kind == Kind::State)),
         // Here a name is made up.
         (
@@ -131,7 +133,13 @@ fn expression(place: &CursorContext<'_>, scope: &Scope) -> Vec<Proposal> {
     let is_value = |kind| {
         !matches!(
             kind,
-            Kind::Model | Kind::Jump | Kind::Path | Kind::Report | Kind::Part | Kind::Column
+            Kind::Model
+                | Kind::Jump
+                | Kind::Path
+                | Kind::Report
+                | Kind::Plot
+                | Kind::Part
+                | Kind::Column
         )
     };
     let mut all = scope.proposals(is_value);

@@ -32,6 +32,7 @@ mod format;
 mod functions;
 mod functions_of_integrals;
 mod fuzzing;
+mod gradients_at_rest;
 mod grids;
 mod growth;
 mod higher_order;

@@ -69,11 +69,12 @@ fn given_values_are_straight_lines_between_the_points() {
 /// Values of parameters stay when a controller is made, and may change after that.
 #[test]
 fn signals_follow_parameters() {
-    let mut twice = follow(0.0).with("a", 2).unwrap().controller(40).unwrap();
-    let mut set = follow(0.0).controller(40).unwrap();
+    let mut twice =
+        follow(0.0).with("a", 2).expect("it is right").controller(40).expect("it is right");
+    let mut set = follow(0.0).controller(40).expect("it is right");
     set.set("a", 2).expect("it is a parameter");
-    let expected = states(twice.step(&[0.0], &Options::default()).unwrap());
-    agree(&states(set.step(&[0.0], &Options::default()).unwrap()), &expected, 1e-9);
+    let expected = states(twice.step(&[0.0], &Options::default()).expect("it is right"));
+    agree(&states(set.step(&[0.0], &Options::default()).expect("it is right")), &expected, 1e-9);
     assert!(expected[20] > 1.2, "twice as far");
 }
 
@@ -82,8 +83,11 @@ fn signals_follow_parameters() {
 #[test]
 fn a_closed_loop_follows_what_lies_ahead() {
     let model = follow(0.0);
-    let mut closed =
-        ClosedLoop::new(model.controller(40).unwrap(), model.plant().unwrap()).unwrap();
+    let mut closed = ClosedLoop::new(
+        model.controller(40).expect("it is right"),
+        model.plant().expect("it is right"),
+    )
+    .expect("it is right");
     for _ in 0..120 {
         closed.solve(&Options::default()).expect("it is solved");
         assert!(closed.apply(&Accuracy::default()).expect("the plant knows all controls"));
@@ -95,8 +99,8 @@ fn a_closed_loop_follows_what_lies_ahead() {
 
 #[test]
 fn wrong_signals_are_told() {
-    let mut controller = follow(0.0).controller(40).unwrap();
-    let message = |found: Result<(), Error>| found.unwrap_err().to_string();
+    let mut controller = follow(0.0).controller(40).expect("it is right");
+    let message = |found: Result<(), Error>| found.expect_err("it is wrong").to_string();
     assert_eq!(message(controller.set_signal("q", &[1.0])), "`q` is no signal; signals are r");
     let number = message(controller.set_signal("r", &[1.0; 40]));
     assert_eq!(number, "`r` takes 1 or 41 finite values, one for each point");
@@ -119,10 +123,11 @@ state p(x, y) start (0, 0)
 control u(x, y) in [-100, 100]
 dynamics { p' = u }
 minimize integral(normsq(p - r) + 0.01*normsq(u))";
-    let mut controller = Model::from_text("two", text).unwrap().controller(20).unwrap();
+    let mut controller =
+        Model::from_text("two", text).expect("it is right").controller(20).expect("it is right");
     assert_eq!(controller.signals().collect::<Vec<_>>(), ["r[1]", "r[2]"]);
     controller.set_signal("r[2]", &[2.0]).expect("it is a signal");
-    let found = controller.step(&[0.0, 0.0], &Options::default()).unwrap();
-    let end = |name| *found.state(name).unwrap().last().unwrap();
+    let found = controller.step(&[0.0, 0.0], &Options::default()).expect("it is right");
+    let end = |name| *found.state(name).expect("it is right").last().expect("it is right");
     assert!((end("p.y") / end("p.x") - 2.0).abs() < 1e-6);
 }

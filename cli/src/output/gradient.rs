@@ -24,6 +24,8 @@ pub struct GradientDocument {
     pub gradient: Named<Derivative>,
     pub adjoint: Named<Derivative>,
     pub agreement: Option<f64>,
+    /// The largest difference to derivatives along steps of twice the length.
+    pub resolution: Option<f64>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub second: Option<Named<Named<f64>>>,
     pub compare: Compare,
@@ -34,6 +36,9 @@ pub struct GradientDocument {
     /// Whether it stays on a kink.
     #[serde(skip)]
     pub has_kink: bool,
+    /// Whether shorter steps lead to another gradient.
+    #[serde(skip)]
+    pub is_unresolved: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub one_sided: Option<Named<Sides>>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -132,11 +137,13 @@ impl GradientDocument {
             gradient: named(by, gradient),
             adjoint: named(by, &exact.adjoint),
             agreement: Some(exact.found.agreement),
+            resolution: Some(exact.found.resolution),
             second: second.map(|rows| square(by, &rows)),
             compare,
             differentiable: is_plain,
             trusted: exact.is_trusted(),
             has_kink: exact.found.kink.is_some(),
+            is_unresolved: !exact.is_resolved(),
             one_sided: (!is_plain && !sides.0.is_empty()).then_some(sides),
             cause: first.map(|found| Reason::new(system, found)),
             warnings,
@@ -160,11 +167,13 @@ impl GradientDocument {
             gradient: Named(Vec::new()),
             adjoint: Named(Vec::new()),
             agreement: None,
+            resolution: None,
             second: None,
             compare: Compare::default(),
             differentiable: false,
             trusted: false,
             has_kink: false,
+            is_unresolved: false,
             one_sided: None,
             cause: None,
             events: events(system, simulation),
@@ -208,10 +217,29 @@ fn kind_name(kind: NondifferentiabilityKind) -> &'static str {
     }
 }
 
+fn unresolved(by: String) -> String {
+    format!(
+        "steps of half the length change it by {by}: do not trust this gradient; --max-step and \
+         --rtol make steps shorter"
+    )
+}
+
 /// What else is to be said of an exact gradient.
 fn doubts(system: &System, exact: &Exact, units: &Units) -> Vec<String> {
     let mut doubts = Vec::new();
-    if !exact.agrees() {
+    if !exact.is_resolved() {
+        doubts.push(unresolved(scientific(exact.found.resolution, 1)));
+    }
+    if exact.is_resolved() && !exact.knows_rests() {
+        doubts.push(
+            "some derivatives are the rest of what was larger by more than 1e12 on the way: their \
+             digits are not known"
+                .into(),
+        );
+    }
+    if exact.found.resolution.is_nan() || exact.found.agreement.is_nan() {
+        doubts.push("a derivative along the way has no value".into());
+    } else if !exact.agrees() {
         let agreement = scientific(exact.found.agreement, 1);
         doubts
             .push(format!("forward and adjoint differ by {agreement}: do not trust this gradient"));

@@ -35,6 +35,12 @@ impl GradientDocument {
         match (self.trusted, self.differentiable) {
             (true, _) => format!("differentiable; forward and adjoint agree to {agreement}"),
             (false, true) if self.has_kink => "NOT TRUSTED: it is on a kink".into(),
+            (false, true) if self.agreement.is_none_or(f64::is_nan) => {
+                "NOT TRUSTED: a derivative along the way has no value".into()
+            }
+            (false, true) if self.is_unresolved => {
+                "NOT TRUSTED: shorter steps lead to another gradient".into()
+            }
             (false, true) => format!("NOT TRUSTED: forward and adjoint differ by {agreement}"),
             (false, false) => {
                 let why = self.cause.as_ref().map(|it| it.words(&self.units)).unwrap_or_default();

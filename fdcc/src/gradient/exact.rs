@@ -1,8 +1,8 @@
 //! The exact gradient of the true system, and whether it is one: both ways to compute it agree, and
 //! both sides do.
 
-use super::tuning::exact::{AGREEMENT, MOST_SIDES, SIDES};
-use fdcc_runtime::sensitivity::{Quantity, Sensitivity, gradient, one_sided};
+use super::tuning::exact::{AGREEMENT, MOST_SIDES, RESOLVED, SIDES};
+use fdcc_runtime::sensitivity::{Quantity, Sensitivity, finer, gradient, one_sided};
 use fdcc_runtime::simulate::{Controls, Options, Simulation, System};
 
 /// A gradient and what is to be thought of it.
@@ -42,6 +42,8 @@ impl Exact {
         quantities: &[Quantity],
     ) -> Result<Exact, Box<Simulation>> {
         let found = gradient(system, controls, options, quantities)?;
+        // Of each side along steps that are as short.
+        let options = &finer(options, &found.simulation);
         let is_doubtful = !found.nondifferentiabilities.is_empty();
         let sides = if is_doubtful && quantities.len() <= MOST_SIDES {
             one_sided(system, controls, options, quantities)
@@ -63,10 +65,22 @@ impl Exact {
         Ok(Exact { found, sides, is_differentiable, gradient, adjoint })
     }
 
-    /// Whether there is a derivative, both ways to compute it agree, and the trajectory stays on no
-    /// kink.
+    /// Whether there is a derivative, both ways to compute it agree, shorter steps lead to the same,
+    /// and the trajectory stays on no kink.
     pub fn is_trusted(&self) -> bool {
-        self.is_differentiable && self.agrees() && self.found.kink.is_none()
+        let is_one = self.is_differentiable && self.found.kink.is_none();
+        is_one && self.agrees() && self.is_resolved()
+    }
+
+    /// Whether steps of half the length lead to the same.
+    pub fn is_resolved(&self) -> bool {
+        self.found.resolution <= RESOLVED
+    }
+
+    /// Whether the digits of all derivatives are known, also of those that are the rest of what was
+    /// larger by far on the way.
+    pub fn knows_rests(&self) -> bool {
+        self.found.resolution_of_rests <= RESOLVED
     }
 
     /// Whether both ways to compute it agree.

@@ -12,8 +12,9 @@ pub use quantities::{By, NotBy};
 
 use crate::error::Error;
 use crate::model::Model;
-use fdcc_runtime::sensitivity::{Quantity, hessian};
-use fdcc_runtime::simulate::{Controls, Options as Accuracy, Simulation, System};
+use fdcc_runtime::sensitivity::{Quantity, finer, hessian};
+use fdcc_runtime::simulate::{Controls, Options as Accuracy, Simulation, System, simulate};
+use tuning::second::{MOST_HALVINGS, SETTLED};
 
 /// The derivative of the objective of the true system by parameters, unknowns, starts or controls.
 ///
@@ -34,6 +35,7 @@ pub struct Gradient {
     /// The true system, compiled for sensitivities.
     pub system: System,
     controls: Controls,
+    accuracy: Accuracy,
     /// What the derivatives are taken by.
     pub by: Vec<By>,
     /// The derivatives; nothing but the simulation where that does not reach the end.
@@ -50,7 +52,8 @@ impl Gradient {
         accuracy: &Accuracy,
     ) -> Self {
         let found = Exact::new(&system, &controls, accuracy, &quantities(&by));
-        Gradient { model: model.clone(), system, controls, by, found }
+        let (model, accuracy) = (model.clone(), accuracy.clone());
+        Gradient { model, system, controls, accuracy, by, found }
     }
 
     /// The derivative by a name: one number; of a control one for each row.
@@ -73,12 +76,31 @@ impl Gradient {
     ///
     /// Why there are none, in words.
     pub fn second(&self) -> Result<Vec<Vec<f64>>, String> {
-        let simulation = self.simulation();
-        let found = hessian(&self.system, &self.controls, simulation, &quantities(&self.by));
+        let found = self.resolved_hessian();
         let why = "there are no second derivatives here: none are known where infinitely many \
                    jumps come to rest, where a `Dir` moves, by a start that leaves a surface on \
                    which it slides, and where a kink is met together with something else";
         found.ok_or(why.to_string())
+    }
+
+    /// Along steps that are halved until it stays the same.
+    fn resolved_hessian(&self) -> Option<Vec<Vec<f64>>> {
+        let by = quantities(&self.by);
+        let of = |it: &Simulation| hessian(&self.system, &self.controls, it, &by);
+        let mut found = of(self.simulation())?;
+        let mut before: Option<Simulation> = None;
+        for _ in 0..MOST_HALVINGS {
+            let last = before.as_ref().unwrap_or(self.simulation());
+            let options = Accuracy { tape: true, ..finer(&self.accuracy, last) };
+            let next = simulate(&self.system, &self.controls, &options);
+            let Some(other) = of(&next) else { break };
+            let is_settled = is_same(&found, &other);
+            (found, before) = (other, Some(next));
+            if is_settled {
+                break;
+            }
+        }
+        Some(found)
     }
 
     /// The trajectory, as far as it came.
@@ -88,6 +110,15 @@ impl Gradient {
             Err(simulation) => simulation,
         }
     }
+}
+
+/// Whether two matrices are the same, each entry relative to the largest of its row and column.
+fn is_same(one: &[Vec<f64>], other: &[Vec<f64>]) -> bool {
+    let size = |at: usize| other[at].iter().fold(0.0, |size: f64, it| size.max(it.abs()));
+    let is_near = |i: usize, j: usize| {
+        (one[i][j] - other[i][j]).abs() <= SETTLED * size(i).min(size(j)) || one[i][j].is_nan()
+    };
+    (0..one.len()).all(|i| (0..one.len()).all(|j| is_near(i, j)))
 }
 
 /// All numbers to differentiate by, in the order of their names.

@@ -20,6 +20,8 @@ pub struct Options {
     pub integrator: Integrator,
     /// The longest step; infinite if only the tolerances limit it.
     pub max_step: f64,
+    /// From each of these times on, ascending, no step is longer than the number beside it.
+    pub paces: Vec<[f64; 2]>,
     /// The most steps, rejected ones included.
     pub max_steps: usize,
     /// Times at which states are wanted, ascending; all steps and events if there are none.
@@ -79,6 +81,20 @@ pub enum Integrator {
 }
 
 impl Options {
+    /// The longest step from a time on.
+    pub(crate) fn longest_from(&self, time: f64) -> f64 {
+        let behind = self.paces.partition_point(|it| it[0] <= time);
+        let own = behind.checked_sub(1).map_or(f64::INFINITY, |at| self.paces[at][1]);
+        let mut longest = own.min(self.max_step);
+        for [begin, pace] in &self.paces[behind..] {
+            if begin - time >= longest {
+                break;
+            }
+            longest = longest.min(begin - time + pace);
+        }
+        longest
+    }
+
     /// The method of the first step.
     pub(crate) fn method(&self) -> Method {
         match self.integrator {
@@ -95,6 +111,7 @@ impl Default for Options {
             atol: None,
             integrator: Integrator::Automatic,
             max_step: f64::INFINITY,
+            paces: Vec::new(),
             max_steps: 1_000_000,
             times: Vec::new(),
             tape: false,

@@ -97,8 +97,12 @@ fn those_that_failed(solution: &Solution, failed: &[&Sequence]) -> Vec<String> {
         [_] if why.is_some() => None,
         [one] => Some(format!("       {}: {}", one.words, one.ended.status.replace('_', " "))),
         many => {
-            let many = plural(many.len(), "other sequence");
-            Some(format!("       {many}: no trajectory found"))
+            let found_none = many.iter().filter(|it| it.ended.status == "none_found").count();
+            let count = plural(many.len(), "other sequence");
+            Some(match many.len() - found_none {
+                0 => format!("       {count}: no trajectory found"),
+                lost => format!("       {count}: not solved, {lost} of them for numerical reasons"),
+            })
         }
     };
     all.into_iter().chain(why).collect()

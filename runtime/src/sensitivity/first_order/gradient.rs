@@ -35,6 +35,14 @@ pub struct Sensitivity {
     /// derivative is made of, at the end or on the way, `sum |lambda_i| |dx_i|`. Where `forward` is
     /// empty, along a sum of the quantities with mixed signs.
     pub agreement: f64,
+    /// The largest difference to the derivatives along steps of twice the length, each relative to
+    /// what that derivative is made of.
+    pub resolution: f64,
+    /// The same where the rest of what has decayed counts as all others do.
+    pub resolution_of_rests: f64,
+    /// Of each quantity the largest sum of the sizes that its derivative is made of, and what counts
+    /// as 0 beside it; of one sum where `forward` is empty.
+    pub(crate) sizes: Vec<[f64; 2]>,
     /// The derivative of each state at the end by each quantity; empty like `forward`.
     pub end: Vec<Vec<f64>>,
     /// The adjoint of the objective.
@@ -60,18 +68,17 @@ impl Costates {
         self.columns.iter().flatten().fold(0.0, |largest, value| largest.max(value.abs()))
     }
 
-    /// The largest `sum_i |lambda_i| |dx_i|` over some directions `dx`.
-    fn pairing(&self, at: usize, dx: &DMatrix<f64>) -> f64 {
-        let sum = |column: nalgebra::DVectorView<'_, f64>| -> f64 {
+    /// `sum_i |lambda_i| |dx_i|` for each of some directions `dx`.
+    fn pairing(&self, at: usize, dx: &DMatrix<f64>) -> impl Iterator<Item = f64> {
+        dx.column_iter().map(move |column| {
             self.columns.iter().zip(column.iter()).map(|(lambda, dx)| (lambda[at] * dx).abs()).sum()
-        };
-        dx.column_iter().map(sum).fold(0.0, f64::max)
+        })
     }
 }
 
-/// Differentiates; nothing but the simulation where it does not reach the end or there is no
-/// objective.
-pub fn gradient(
+/// Differentiates along the steps that the state needs; nothing but the simulation where it does
+/// not reach the end or there is no objective.
+pub(super) fn along_own_steps(
     system: &System,
     controls: &Controls,
     options: &Options,
@@ -95,14 +102,18 @@ pub fn gradient(
         signs(adjoint.len())
     };
     let directions = Directions::new(system, controls, quantities, &weights);
-    let (mut on_the_way, mut largest): (f64, f64) = (0.0, 0.0);
+    let mut on_the_way = vec![0.0_f64; weights.ncols()];
+    let mut largest = on_the_way.clone();
     let mut before_events = Vec::new();
     let end = super::forward(&pieces, &directions, &mut |at, s| {
         before_events.extend(moved_before(tape, at + 1, s));
-        on_the_way = on_the_way.max(costates.pairing(at + 1, s));
-        largest = largest.max(s.amax());
+        widen(&mut on_the_way, costates.pairing(at + 1, s));
+        widen(&mut largest, s.column_iter().map(|it| it.amax()));
     });
-    let all = on_the_way.max(FORGOTTEN * largest * costates.largest());
+    let forgotten = FORGOTTEN * costates.largest();
+    let sizes: Vec<[f64; 2]> =
+        on_the_way.into_iter().zip(largest).map(|(size, it)| [size, forgotten * it]).collect();
+    let all = sizes.iter().flatten().copied().fold(0.0, f64::max);
     let forward = super::along(&lineariser, &objective, &directions, &end);
     let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));
     let size = super::size(&lineariser, &objective, &directions, &end).max(all);
@@ -119,6 +130,9 @@ pub fn gradient(
     Ok(Sensitivity {
         value: objective.value,
         agreement: agreement(&forward, along.as_slice(), size),
+        resolution: f64::INFINITY,
+        resolution_of_rests: f64::INFINITY,
+        sizes,
         end: if is_each { rows(&end) } else { Vec::new() },
         forward: if is_each { forward } else { Vec::new() },
         adjoint,
@@ -127,6 +141,11 @@ pub fn gradient(
         kink: kink_met(&lineariser, tape, &parameters(quantities), &before_events).or(kink),
         simulation,
     })
+}
+
+/// Each is as large as another at least.
+fn widen(sizes: &mut [f64], others: impl Iterator<Item = f64>) {
+    sizes.iter_mut().zip(others).for_each(|(size, other)| *size = size.max(other));
 }
 
 /// The first kink of anything but the objective.

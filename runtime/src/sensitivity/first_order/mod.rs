@@ -9,6 +9,7 @@ pub(crate) mod gradient;
 pub(crate) mod one_sided;
 pub(crate) mod perturbed;
 pub(crate) mod quantity;
+pub(crate) mod resolved;
 
 use super::linearised::linearisation::{Jacobian, Lineariser};
 use super::linearised::variational_equation::LinearTape;

@@ -195,7 +195,7 @@ impl Run<'_> {
         // Two steps of equal length are better than a long and a very short one.
         let mut h = if wanted >= rest * (1.0 - NO_REST) { rest } else { wanted.min(0.5 * rest) };
         h = h.min(longest);
-        h = h.min(self.options.max_step);
+        h = h.min(self.options.longest_from(self.t));
         let mut is_short = h < wanted;
         // Near 0 the direction of a ball is stiff in a way of its own.
         let method =

@@ -232,7 +232,7 @@ fn a_limit_that_is_reached_for_an_instant_is_told() {
         stdout(&fdcc(&folder, &arguments, ""))
     };
     // A little more force moves the block by the power 3/2 of it: both derivatives are the same.
-    assert!(said("p=0").contains("(and 1 more); the derivatives from both sides agree"));
+    assert!(said("p=0").contains("(and 2 more); the derivatives from both sides agree"));
     assert!(!said("p=-1e-3").contains("more"));
 }
 

@@ -5,6 +5,22 @@ use crate::solve::Solution;
 use fdcc_compiler::{Border, Model, Plane};
 
 /// `plot name: curves over something with borders`.
+///
+/// ```
+/// let model = fdcc::Model::from_text("shot", "time t in [0, 1]
+/// state p(x, y) start (0, 0)
+/// control u in [-2, 2]
+/// dynamics { p' = (1, u) }
+/// path tube: abs(p.y - p.x^2) <= 0.1
+/// minimize integral(u^2)
+/// plot course: p.y over p.x with tube")?;
+/// let solution = model.solve(&fdcc::Options::default())?;
+/// let [course] = &solution.plots()[..] else { panic!("there is one") };
+/// assert_eq!((&course.over[..], &course.curves[0][..]), ("p.x", "p.y"));
+/// let [x, y] = course.borders[0].1[0][0];
+/// assert!(((y - x * x).abs() - 0.1).abs() < 1e-3);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plot {
     /// Its name.
@@ -26,22 +42,6 @@ const CELLS: usize = 160;
 
 impl Solution {
     /// The pictures that the model asks for.
-    ///
-    /// ```
-    /// let model = fdcc::Model::from_text("shot", "time t in [0, 1]
-    /// state p(x, y) start (0, 0)
-    /// control u in [-2, 2]
-    /// dynamics { p' = (1, u) }
-    /// path tube: abs(p.y - p.x^2) <= 0.1
-    /// minimize integral(u^2)
-    /// plot course: p.y over p.x with tube")?;
-    /// let solution = model.solve(&fdcc::Options::default())?;
-    /// let [course] = &solution.plots()[..] else { panic!("there is one") };
-    /// assert_eq!((&course.over[..], &course.curves[0][..]), ("p.x", "p.y"));
-    /// let [x, y] = course.borders[0].1[0][0];
-    /// assert!(((y - x * x).abs() - 0.1).abs() < 1e-3);
-    /// # Ok::<(), fdcc::Error>(())
-    /// ```
     pub fn plots(&self) -> Vec<Plot> {
         let unknowns: Vec<(&str, f64)> = self.unknowns().collect();
         let column = |name: &str| self.state(name).or_else(|| self.control(name));

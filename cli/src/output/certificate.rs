@@ -200,20 +200,19 @@ fn missed(check: &str, [figure, limit]: [f64; 2]) -> String {
         "bounds" => {
             format!("a control leaves its bounds by {figure} between nodes (limit {limit})")
         }
-        "minimum" => {
-            format!(
-                "another control makes the Hamiltonian less by {figure} of its size (limit {limit})"
-            )
+        "minimum" | "controls" | "arcs" | "hamiltonian" if is_unknown => {
+            format!("a value of the check `{check}` is no number")
         }
+        "minimum" => format!(
+            "another control makes the Hamiltonian less by {figure} of its size (limit {limit})"
+        ),
         "controls" => format!(
             "between their nodes controls lose {figure} of the objective's size (limit {limit})"
         ),
         "arcs" => format!("a bound multiplier has the wrong sign by {figure} (limit {limit})"),
-        "hamiltonian" => {
-            format!(
-                "the Hamiltonian changes inside of a phase by {figure} of its size (limit {limit})"
-            )
-        }
+        "hamiltonian" => format!(
+            "the Hamiltonian changes inside of a phase by {figure} of its size (limit {limit})"
+        ),
         name => format!("{name} {figure} (limit {limit})"),
     }
 }

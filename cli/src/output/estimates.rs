@@ -96,9 +96,12 @@ impl Estimates {
         let mut words = format!(" fit   {}", signals.join(", "));
         match (self.degrees_of_freedom, self.deviation) {
             (Some(count), Some(deviation)) => {
-                let of = if self.noise == "given" { " standard deviations" } else { "" };
+                let residuals = match self.noise {
+                    "given" => format!("{} standard deviations", short(deviation)),
+                    _ => in_unit_of_squares(deviation, document),
+                };
                 let degrees = plural(count, "degree");
-                words += &format!("   {degrees} of freedom   residuals {}{of}", short(deviation));
+                words += &format!("   {degrees} of freedom   residuals {residuals}");
             }
             _ if self.is_minimum => words += "   no more measurements than what they determine",
             _ => {}
@@ -155,5 +158,17 @@ impl Residual {
         let rows = self.values.iter().flatten().count();
         let phase = self.phase.iter().map(|phase| format!("{phase}.")).collect::<String>();
         format!("{phase}{} in {} of {}", self.signal, plural(rows, "row"), self.data)
+    }
+}
+
+/// The root of a mean of squares: in `mm` where the objective, their sum, is in `mm^2`.
+fn in_unit_of_squares(deviation: f64, document: &Document) -> String {
+    let squares = document.units.unit("objective");
+    match squares.trim().strip_suffix("^2") {
+        Some(unit) if !unit.contains([' ', '/', '*']) => {
+            let scale = document.units.scaled("objective", 1.0).sqrt();
+            format!("{} {unit}", short(deviation * scale))
+        }
+        _ => short(deviation),
     }
 }

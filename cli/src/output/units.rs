@@ -72,7 +72,10 @@ impl Units {
                 .strip_prefix(it.name.as_str())
                 .is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
-        match self.1.iter().find(is_it) {
+        // A condition of a phase is told with its name in front.
+        let of_phase = condition.split_once('.').map(|it| it.1);
+        let is_of_phase = |it: &&NamedUnit| of_phase == Some(it.name.as_str());
+        match self.1.iter().find(is_it).or_else(|| self.1.iter().find(is_of_phase)) {
             Some(it) => {
                 Units::new(vec![it.clone()], Vec::new(), None).value(&it.name, value, digits)
             }

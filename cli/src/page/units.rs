@@ -42,7 +42,9 @@ pub fn of_condition(document: &Json, condition: &str) -> Unit {
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
     let known = document.at("display_units").pairs().iter().find(|(name, _)| is_it(name));
-    of_value(document, known.map_or(condition, |(name, _)| name))
+    // `start v` is the start that the model gives to a state.
+    let own = condition.strip_prefix("start ").unwrap_or(condition);
+    of_value(document, known.map_or(own, |(name, _)| name))
 }
 
 /// `J per kg`: that of a derivative.

@@ -49,7 +49,7 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
     let Solved { solution, document } = solved;
     let Solution { problem, outcome, .. } = solution;
     let units = &document.units;
-    let Limiting { origin, condition, violation, .. } = limiting;
+    let Limiting { origin, condition, violation, in_all, .. } = limiting;
     let (found, is_not) = match outcome.is_impossible {
         true => ("no feasible trajectory found", "cannot be met"),
         false => ("no feasible trajectory found near the guess", "is not met"),
@@ -62,10 +62,8 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
             let label = "this stands against the equations most";
             // What is off is the state of the equation.
             let state = origin.label.trim_end_matches('\'');
-            let worst = format!(
-                "worst{when}: off by {} in one step",
-                units.violation(state, *violation, 3)
-            );
+            let [once, in_all] = [*violation, *in_all].map(|it| units.violation(state, it, 3));
+            let worst = format!("worst{when}: off by {once} in one step, {in_all} in all");
             Diagnostic::new(Code::Infeasible, message, span(condition.span), label)
                 .label(span(origin.span), worst)
         }
@@ -105,10 +103,12 @@ fn advice(solution: &Solution) -> String {
     )
 }
 
-/// How close to a bound counts as at the bound.
+/// How close to a bound counts as at the bound, as a part of the range of a control, or of its
+/// largest value where that is open.
 const NEAR: f64 = 1e-3;
 
-/// Controls that are at a bound at the worst time, with the span of time over which they are.
+/// Controls that are at a bound at the worst time, with the span of time over which they are; where
+/// there is no such time, as at the end, their longest stays.
 fn saturated<'p>(
     problem: &'p Problem,
     outcome: &Outcome,
@@ -117,11 +117,13 @@ fn saturated<'p>(
 ) -> Vec<(&'p Variable, String)> {
     let trajectory = &outcome.trajectory;
     let worst = limiting.time.and_then(|t| trajectory.time.iter().position(|other| *other >= t));
-    let worst = worst.unwrap_or(trajectory.time.len() - 1).saturating_sub(1);
     let controls = problem.controls.iter().zip(&trajectory.controls);
     let mut found: Vec<(&Variable, String)> = controls
         .filter_map(|(control, values)| {
-            let (bound, first, last) = stay(control, values, worst)?;
+            let (bound, first, last) = match worst.filter(|_| limiting.condition.is_none()) {
+                Some(worst) => stay(control, values, worst.saturating_sub(1))?,
+                None => longest_stay(control, values)?,
+            };
             let [from, to] = [first, last + 1].map(|k| units.value("time", trajectory.time[k], 6));
             let bound = units.value(&control.name, bound, 6);
             Some((control, format!("`{}` is at {bound} from t = {from} to {to}", control.name)))
@@ -132,10 +134,21 @@ fn saturated<'p>(
     found
 }
 
+/// The longest of all stays.
+fn longest_stay(control: &Variable, values: &[f64]) -> Option<(f64, usize, usize)> {
+    let intervals = (0..values.len()).rev();
+    let all = intervals.filter_map(|interval| stay(control, values, interval));
+    // The first of equals.
+    all.max_by_key(|(_, first, last)| last - first)
+}
+
 /// The bound at which a control is in an interval, with the first and last interval of that stay.
 fn stay(control: &Variable, values: &[f64], interval: usize) -> Option<(f64, usize, usize)> {
     let bounds = control.bounds;
-    let is_near = |k: usize, bound: f64| (values[k] - bound).abs() <= NEAR * bound.abs().max(1.0);
+    let range = bounds.upper - bounds.lower;
+    let largest = values.iter().fold(0.0, |largest: f64, it| largest.max(it.abs()));
+    let size = if range.is_finite() { range } else { largest };
+    let is_near = |k: usize, bound: f64| (values[k] - bound).abs() <= NEAR * size;
     let ends = [bounds.lower, bounds.upper].into_iter().filter(|bound| bound.is_finite());
     let bound = ends.filter(|_| !bounds.is_equality()).find(|bound| is_near(interval, *bound))?;
     let first = (0..=interval).rev().take_while(|k| is_near(*k, bound)).last()?;

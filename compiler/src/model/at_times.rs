@@ -4,7 +4,6 @@ use super::numbers::{Numbers, numbers};
 use crate::expressions::graph::{ExprId, Graph};
 use crate::expressions::interval::{Interval, Tape};
 use crate::model::{AtTime, Model, Symbol};
-use crate::syntax::text;
 use fdcc_grammar::{Code, Diagnostic};
 use std::collections::{BTreeMap, HashMap};
 
@@ -103,7 +102,7 @@ impl Model {
         };
         let at = if word == "start" { 0 } else { 1 };
         let place = &instant.conditions[0].place;
-        let shown = |time: f64| text::number((time * 1e9).round() / 1e9);
+        let shown = |time: f64| self.time_in_words(time);
         let message = format!("`at {}` is not inside of the horizon", place.name);
         let label = match self.is_given(instant.time) && self.is_given(self.interval[at]) {
             true => {

@@ -94,52 +94,66 @@ impl Model {
         let mut found = Vec::new();
         for sum in &self.sums {
             let (table, times) = (&self.tables[sum.table], self.row_times(numbers, sum));
-            found.extend(back_in_time(sum, table, &times));
+            found.extend(self.back_in_time(sum, table, &times));
             if !self.has_free_ends() {
                 let ends = self.interval.map(|end| numbers.value(self, end));
-                found.extend(beyond(sum, table, &times, ends));
+                found.extend(self.beyond(sum, table, &times, ends));
             }
         }
         found
     }
-}
 
-fn back_in_time(sum: &Sum, table: &Table, times: &[f64]) -> Option<Diagnostic> {
-    let row = times.windows(2).position(|pair| pair[1] < pair[0])? + 1;
-    let message = format!("{} goes back in time", table.row_in_words(row));
-    let label = format!("at {}, after a row at {}", shown(times[row]), shown(times[row - 1]));
-    let found = Diagnostic::new(Code::RowOrder, message, sum.place.span, label);
-    let found = found.label(table.place, "in this file");
-    Some(Diagnostic { severity: Severity::Warning, ..found }.help(
-        "rows in another order give the same sum; if a number is wrong, correct it in the file",
-    ))
-}
+    fn back_in_time(&self, sum: &Sum, table: &Table, times: &[f64]) -> Option<Diagnostic> {
+        let shown = |time| self.time_in_words(time);
+        let row = times.windows(2).position(|pair| pair[1] < pair[0])? + 1;
+        let message = format!("{} goes back in time", table.row_in_words(row));
+        let label = format!("at {}, after a row at {}", shown(times[row]), shown(times[row - 1]));
+        let found = Diagnostic::new(Code::RowOrder, message, sum.place.span, label);
+        let found = found.label(table.place, "in this file");
+        Some(Diagnostic { severity: Severity::Warning, ..found }.help(
+            "rows in another order give the same sum; if a number is wrong, correct it in the file",
+        ))
+    }
 
-fn beyond(sum: &Sum, table: &Table, times: &[f64], [first, last]: [f64; 2]) -> Option<Diagnostic> {
-    let room = ROUNDING * (last - first).abs();
-    let [before, behind] = sum.is_shared;
-    let is_within = |time: f64| (before || time >= first - room) && (behind || time <= last + room);
-    let is_outside = |time: &&f64| !is_within(**time);
-    let row = times.iter().position(|time| !is_within(*time))?;
-    let count = times.iter().filter(is_outside).count();
-    let message = format!("{} is beyond the time of the model", table.row_in_words(row));
-    let [first, last] = [first, last].map(shown);
-    let label = match count {
-        1 => format!("a row at {}; time goes from {first} to {last}", shown(times[row])),
-        _ => format!(
-            "{count} rows, the first at {}; time goes from {first} to {last}",
-            shown(times[row])
-        ),
-    };
-    let found = Diagnostic::new(Code::RowBeyondTime, message, sum.place.span, label);
-    Some(
-        found
-            .label(table.place, "in this file")
-            .help("let `time` cover all rows, or leave out those that do not belong to this run"),
-    )
-}
+    fn beyond(
+        &self,
+        sum: &Sum,
+        table: &Table,
+        times: &[f64],
+        [first, last]: [f64; 2],
+    ) -> Option<Diagnostic> {
+        let shown = |time| self.time_in_words(time);
+        let room = ROUNDING * (last - first).abs();
+        let [before, behind] = sum.is_shared;
+        let is_within =
+            |time: f64| (before || time >= first - room) && (behind || time <= last + room);
+        let is_outside = |time: &&f64| !is_within(**time);
+        let row = times.iter().position(|time| !is_within(*time))?;
+        let count = times.iter().filter(is_outside).count();
+        let message = format!("{} is beyond the time of the model", table.row_in_words(row));
+        let [first, last] = [first, last].map(&shown);
+        let label = match count {
+            1 => format!("a row at {}; time goes from {first} to {last}", shown(times[row])),
+            _ => format!(
+                "{count} rows, the first at {}; time goes from {first} to {last}",
+                shown(times[row])
+            ),
+        };
+        let found = Diagnostic::new(Code::RowBeyondTime, message, sum.place.span, label);
+        Some(
+            found.label(table.place, "in this file").help(
+                "let `time` cover all rows, or leave out those that do not belong to this run",
+            ),
+        )
+    }
 
-/// Rounded for people.
-fn shown(value: f64) -> String {
-    text::number((value * 1e9).round() / 1e9)
+    /// A time as the text writes times, rounded for people.
+    pub(crate) fn time_in_words(&self, time: f64) -> String {
+        let unit = self.units.iter().find(|it| it.is_time).filter(|it| it.scale != 1.0);
+        let rounded = |value: f64| text::number((value * 1e9).round() / 1e9);
+        match unit {
+            Some(it) => format!("{} {}", rounded(time / it.scale), it.unit),
+            None => rounded(time),
+        }
+    }
 }

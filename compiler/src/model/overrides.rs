@@ -266,6 +266,8 @@ fn as_width(own: &WidthUnit, text: &str, given: Quantity) -> Result<f64, String>
     let unit = &own.unit;
     match given.dimension {
         None if own.takes_numbers => Ok(given.value * unit.scale),
+        // It is the same in every unit.
+        None if given.value == 0.0 => Ok(0.0),
         None => Err(format!(
             "`sigma` needs a unit, such as `{}[{}]`: what is smoothed is made of names in other \
              units than those of SI",

@@ -110,7 +110,19 @@ impl Findings<'_, '_> {
             ItemKind::Expect { checks } => Some(checks),
             _ => None,
         });
-        items.iter().filter_map(of_item).chain(checks.flatten().filter_map(of_check)).collect()
+        let checks = checks.flatten().filter_map(of_check);
+        let mut all: Vec<NamedUnit> = items.iter().filter_map(of_item).chain(checks).collect();
+        for item in items {
+            let ItemKind::Phase { name, items, .. } = &item.kind else { continue };
+            let own = self.conditions(items, names);
+            // The whole tells them with the name of their phase.
+            let told = own.clone().into_iter();
+            all.extend(
+                told.map(|it| NamedUnit { name: format!("{}.{}", name.name, it.name), ..it }),
+            );
+            all.extend(own);
+        }
+        all
     }
 
     /// What the width of every surface measures; none where they differ, or where there is none.

@@ -65,8 +65,8 @@ impl Exact {
         Ok(Exact { found, sides, is_differentiable, gradient, adjoint })
     }
 
-    /// Whether there is a derivative, both ways to compute it agree, shorter steps lead to the same,
-    /// and the trajectory stays on no kink.
+    /// Whether there is a derivative, both ways to compute it agree, shorter steps lead to the
+    /// same, and the trajectory stays on no kink.
     pub fn is_trusted(&self) -> bool {
         let is_one = self.is_differentiable && self.found.kink.is_none();
         is_one && self.agrees() && self.is_resolved()

@@ -8,7 +8,7 @@ use super::true_optimum::certificate_limits::{
 };
 use super::true_optimum::{
     Certificate, Check, Contacts, Located, Range, Stretch, beyond_bounds, is_attracted,
-    jumps_in_the_end, ranges, variation, wrong_sign,
+    jumps_in_the_end, ranges, variations, wrong_sign,
 };
 use crate::verification::{Stay, Verification, modes};
 use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, is_kink, limits};
@@ -102,7 +102,10 @@ fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec
             Arc::Free => seen_arc(&located.outcome.phases[j], at, &ranges[at]),
             arc => arc,
         };
-        (it.name.clone(), stretches(located, &|j, phase| [seen(j, phase.arcs[at]), Arc::Free]))
+        (
+            it.name.clone(),
+            stretches(located, &|j, phase| (vec![(0.0, seen(j, phase.arcs[at]))], Arc::Free)),
+        )
     };
     let mut all: Vec<(String, Vec<Stretch>)> = controls.map(of_control).collect();
     let mut conditions = model.path.iter();
@@ -111,7 +114,7 @@ fn arcs(between: &Problem, model: &Model, located: &Located) -> Vec<(String, Vec
             Some(state) => model.states[state].place.name.clone(),
             None => conditions.next().map_or(String::new(), |it| it.place.name.clone()),
         };
-        let own = stretches(located, &|j, phase| [contacts.seen(j, at), phase.touches[at]]);
+        let own = stretches(located, &|j, phase| (contacts.seen(j, at), phase.touches[at]));
         if own.len() > 1 || own.iter().any(|it| it.arc != "free") {
             all.push((name, own));
         }
@@ -131,19 +134,27 @@ fn seen_arc(phase: &Outcome, control: usize, Range { bounds, width, .. }: &Range
     }
 }
 
+/// What holds from which parts of a phase on, and where it begins.
+type InPhase = (Vec<(f64, Arc)>, Arc);
+
 /// From what each phase has along it, and where it begins.
-fn stretches(located: &Located, of: &dyn Fn(usize, &PhaseOfModes) -> [Arc; 2]) -> Vec<Stretch> {
+fn stretches(located: &Located, of: &dyn Fn(usize, &PhaseOfModes) -> InPhase) -> Vec<Stretch> {
     let mut all: Vec<Stretch> = Vec::new();
     let structure = &located.structure;
     for ((j, phase), pair) in structure.phases.iter().enumerate().zip(structure.times.windows(2)) {
-        let [along, begin] = of(j, phase).map(arc_name);
+        let (along, begin) = of(j, phase);
+        let (first, begin) = (arc_name(along[0].1), arc_name(begin));
         let goes_on = all.last().is_some_and(|it| it.arc == begin);
-        if begin != "free" && along == "free" && !goes_on {
+        if begin != "free" && first == "free" && !goes_on {
             all.push(Stretch { arc: begin, from: pair[0], to: pair[0] });
         }
-        match all.last_mut().filter(|it| it.arc == along) {
-            Some(stretch) => stretch.to = pair[1],
-            None => all.push(Stretch { arc: along, from: pair[0], to: pair[1] }),
+        let ends = along.iter().skip(1).map(|it| it.0).chain([1.0]);
+        for ((from, arc), to) in along.iter().zip(ends) {
+            let [from, to] = [*from, to].map(|part| pair[0] + part * (pair[1] - pair[0]));
+            match all.last_mut().filter(|it| it.arc == arc_name(*arc)) {
+                Some(stretch) => stretch.to = to,
+                None => all.push(Stretch { arc: arc_name(*arc), from, to }),
+            }
         }
     }
     all
@@ -197,5 +208,5 @@ fn is_same(switch: &Switched, span: &Span, stay: &Stay) -> bool {
 /// By how much of its size the Hamiltonian changes inside of phases, over the whole time.
 fn hamiltonian(located: &Located) -> f64 {
     let [first, last] = located.structure.ends();
-    located.outcome.phases.iter().map(variation).fold(0.0, f64::max) / (last - first)
+    variations(&located.outcome.phases).fold(0.0, f64::max) / (last - first)
 }

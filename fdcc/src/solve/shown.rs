@@ -2,7 +2,8 @@
 //! costates before jumps.
 
 use super::Solution;
-use fdcc_runtime::problem::{Bounds, Columns, Problem, Variable};
+use super::true_optimum::path_at_ends;
+use fdcc_runtime::problem::{Bounds, Problem, Variable};
 use fdcc_runtime::solution::{Outcome, Trajectory};
 
 /// A path condition along a solution; numbers are in SI.
@@ -88,30 +89,11 @@ pub(super) fn path_conditions(problem: &Problem, trajectory: &Trajectory) -> Vec
     if problem.path_bounds.is_empty() || trajectory.time.is_empty() {
         return Vec::new();
     }
-    let values = path_values(problem, trajectory);
+    let values = path_at_ends(problem, trajectory);
     let condition = |(row, bounds): (usize, &Bounds)| {
         let values = std::iter::once(f64::NAN).chain(values.column(row).iter().copied());
         let name = problem.path.origin(row).label.to_string();
         PathCondition { name, bounds: *bounds, values: values.collect() }
     };
     problem.path_bounds.iter().enumerate().map(condition).collect()
-}
-
-/// The path functions at the grid points after the first, each with the control before it.
-fn path_values(problem: &Problem, trajectory: &Trajectory) -> Columns {
-    let (path, time) = (&*problem.path, &trajectory.time);
-    let [first, last] = [time[0], time[time.len() - 1]];
-    let mut inputs = Columns::new(path.layout().point_inputs(), time.len() - 1);
-    for (tau, time) in inputs.column_mut(0).iter_mut().zip(&time[1..]) {
-        *tau = (time - first) / (last - first);
-    }
-    for (at, column) in trajectory.states.iter().take(problem.layout.x).enumerate() {
-        inputs.column_mut(1 + at).copy_from_slice(&column[1..]);
-    }
-    for (at, column) in trajectory.controls.iter().enumerate() {
-        inputs.column_mut(1 + problem.layout.x + at).copy_from_slice(column);
-    }
-    let mut values = Columns::new(path.outputs(), time.len() - 1);
-    path.value(&inputs, &trajectory.parameters, &mut values);
-    values
 }

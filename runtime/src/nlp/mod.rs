@@ -340,14 +340,18 @@ pub struct Solution {
 
 /// The constraint that is violated most, and by how much.
 pub fn worst_constraint(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
-    let mut rows = vec![0.0; nlp.constraint_bounds().len()];
-    nlp.values(v, &mut rows);
-    let violations =
-        nlp.constraint_bounds().iter().zip(&rows).map(|(bounds, value)| bounds.violation(*value));
-    violations.enumerate().fold(None, |worst, (row, violation)| match worst {
+    violations(nlp, v).into_iter().enumerate().fold(None, |worst, (row, violation)| match worst {
         Some((_, largest)) if largest >= violation => worst,
         _ => Some((row, violation)),
     })
+}
+
+/// By how much each constraint is violated at `v`.
+pub fn violations(nlp: &mut dyn Nlp, v: &[f64]) -> Vec<f64> {
+    let mut rows = vec![0.0; nlp.constraint_bounds().len()];
+    nlp.values(v, &mut rows);
+    let all = nlp.constraint_bounds().iter().zip(&rows);
+    all.map(|(bounds, value)| bounds.violation(*value)).collect()
 }
 
 /// Largest violation of constraints and bounds at `v`.

@@ -88,4 +88,6 @@ pub struct Limiting {
     pub time: Option<f64>,
     /// How far it is violated.
     pub violation: f64,
+    /// The sum over all times.
+    pub in_all: f64,
 }

@@ -193,15 +193,40 @@ fn limiting(
     phases: &[Outcome],
     tol: f64,
 ) -> Option<Limiting> {
-    let (row, violation) = crate::nlp::worst_constraint(nlp, &solution.v)?;
-    if solution.status.is_solved() || violation <= tol {
+    let violations = crate::nlp::violations(nlp, &solution.v);
+    let worst = largest(&violations, |_| true)?;
+    if solution.status.is_solved() || violations[worst] <= tol {
         return None;
     }
-    let place = nlp.constraint_place(row);
+    // A condition may be missed by as little as each step, and all steps together by far more.
+    let step = largest(&violations, |row| nlp.is_defect(row));
+    let place_of = |row| nlp.constraint_place(row);
+    let in_all = |row: usize| -> f64 {
+        let own = place_of(row);
+        let is_same = |other: &usize| {
+            let place = place_of(*other);
+            (place.phase, place.origin.span) == (own.phase, own.origin.span)
+        };
+        let violated = (0..violations.len()).filter(|it| violations[*it] > 0.0);
+        violated.filter(is_same).map(|it| violations[it]).sum()
+    };
+    let is_spread = |step: &usize| in_all(*step) > violations[worst] && !nlp.is_defect(worst);
+    let (row, condition) = match step.filter(is_spread) {
+        Some(step) => (step, Some(place_of(worst).origin)),
+        None if nlp.is_defect(worst) => (worst, strongest_condition(nlp, solution)),
+        None => (worst, None),
+    };
+    let place = place_of(row);
     let time = place.grid_point.map(|k| phases[place.phase].trajectory.time[k]);
-    let condition = if nlp.is_defect(row) { strongest_condition(nlp, solution) } else { None };
-    let phase = place.phase;
-    Some(Limiting { origin: place.origin, condition, phase, time, violation })
+    let (phase, violation, in_all) = (place.phase, violations[row], in_all(row));
+    Some(Limiting { origin: place.origin, condition, phase, time, violation, in_all })
+}
+
+/// The row of the largest violation among some.
+fn largest(violations: &[f64], is_asked: impl Fn(usize) -> bool) -> Option<usize> {
+    let rows = (0..violations.len()).filter(|row| is_asked(*row));
+    // The first of equals.
+    rows.rev().max_by(|a, b| violations[*a].total_cmp(&violations[*b]))
 }
 
 /// The path or boundary condition with the largest multiplier.

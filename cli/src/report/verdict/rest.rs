@@ -23,7 +23,12 @@ pub(super) fn lines(solved: &Solved) -> Vec<String> {
 
 fn of(solution: &Solution, units: &Units) -> Vec<String> {
     let (problem, outcome) = (&solution.problem, &solution.outcome);
-    let is_open = !matches!(outcome.solution.status, Status::Solved | Status::NotFinite(_));
+    let is_lost = matches!(
+        outcome.solution.status,
+        Status::NumericalFailure | Status::IterationLimit | Status::Infeasible
+    );
+    // What is met to rounding does not stand in the way.
+    let is_open = is_lost && outcome.solution.constraint_violation > problem.method.tol;
     let Some(ends) = is_open.then(|| misses(problem, &outcome.trajectory)) else {
         return Vec::new();
     };

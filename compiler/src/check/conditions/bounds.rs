@@ -2,11 +2,12 @@
 //! backwards.
 
 use crate::check::facts::Facts;
-use crate::model::{Range, State};
+use crate::expressions::graph::{Expr as Node, ExprId};
+use crate::model::{Range, State, Symbol};
 use crate::resolve::elaborator::Elaborator;
-use crate::syntax::text;
+use crate::syntax::{scope, text};
 use crate::units;
-use fdcc_grammar::ast::{Ident, Interval, Item, ItemKind, Start};
+use fdcc_grammar::ast::{self, Ident, Interval, Item, ItemKind, Start};
 use fdcc_grammar::{Code, Diagnostic, Edit, Fix, Label, Span};
 
 /// Relative to the sizes of the bounds, whatever their unit: a start of `0.1 + 0.2` is not above
@@ -231,6 +232,20 @@ fn backwards(meaning: &Elaborator<'_>, interval: &Interval, scale: f64, mistakes
     }
 }
 
+/// The unit that a state or a control is declared in, where a value is one.
+fn unit_of<'a>(meaning: &Elaborator<'a>, value: ExprId) -> Option<&'a ast::Unit> {
+    let Node::Input(input) = meaning.graph.expr(value) else { return None };
+    let name = match meaning.symbols[*input as usize] {
+        Symbol::State(at) | Symbol::AtStart(at) | Symbol::AtEnd(at) => {
+            &meaning.model.states[at].place.name
+        }
+        Symbol::Control(at) => &meaning.model.controls[at].place.name,
+        _ => return None,
+    };
+    let declared = meaning.scope.find(name.split('.').next().unwrap_or(name))?;
+    scope::unit(meaning.scope.declarations[declared].item)
+}
+
 /// Conditions between constants that exclude each other.
 fn rows(meaning: &Elaborator<'_>, mistakes: &mut Mistakes) {
     for row in meaning
@@ -242,11 +257,9 @@ fn rows(meaning: &Elaborator<'_>, mistakes: &mut Mistakes) {
     {
         let [lower, upper] = numbers(meaning, row.range);
         if lower > upper {
-            let text = format!(
-                "no number is both above {} and below {}",
-                text::number(lower),
-                text::number(upper)
-            );
+            let unit = unit_of(meaning, row.value);
+            let [low, high] = [lower, upper].map(|it| units::in_words(it, unit));
+            let text = format!("no number is both above {low} and below {high}");
             mistakes.labels.push(Label { span: row.place.span, text });
             mistakes.repairs.push(format!(
                 "for `{}`, the left limit must be below the right one",

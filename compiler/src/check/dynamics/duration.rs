@@ -104,9 +104,12 @@ fn difference(interval: &Interval, frees: &[&Place], least: f64) -> Diagnostic {
 fn unbounded(facts: &Facts<'_, '_>, index: usize, worst: f64) -> Diagnostic {
     let free = &facts.meaning.model.frees[index];
     let name = &free.place.name;
-    let (message, label) = match worst == 0.0 {
-        true => (format!("free time `{name}` may become 0"), "may become 0"),
-        false => (format!("free time `{name}` has no lower bound"), "may become 0 or negative"),
+    let (message, label) = match worst {
+        0.0 => (format!("free time `{name}` may become 0"), "may become 0"),
+        _ if worst.is_finite() => {
+            (format!("free time `{name}` may become negative"), "may become 0 or negative")
+        }
+        _ => (format!("free time `{name}` has no lower bound"), "may become 0 or negative"),
     };
     let mut found = Diagnostic::new(Code::NoDuration, message, free.place.span, label);
     if let Some(span) = objective(facts).and_then(|value| walk::mention(value, name)) {

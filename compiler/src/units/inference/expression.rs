@@ -80,7 +80,10 @@ impl<'a> Inference<'a> {
     /// The unit of time.
     pub fn time(&self) -> Value {
         let is_time = |it: &&scope::Declaration<'_>| matches!(it.item.kind, ItemKind::Time { .. });
-        let time = self.scope.declarations.iter().find(is_time);
+        let own = self.scope.declarations.iter().find(is_time);
+        // What stands outside of all phases has the times of all, which measure the same.
+        let others = self.phases.values().flat_map(|it| &it.declarations).filter(is_time);
+        let time = own.or_else(|| others.min_by_key(|it| it.name.span.start));
         time.and_then(|it| self.values.get(&it.name.span).cloned()).unwrap_or_default()
     }
 

@@ -3,7 +3,7 @@
 //! Where a limit is bounded by an inequality, its multiplier says on which intervals it is active.
 
 use super::Located;
-use super::path_values::{path_values, slopes};
+use super::path_values::{path_at_ends, path_values, slopes};
 use super::tracks::Track;
 use super::tuning::contacts::{
     FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN, TOUCHED,
@@ -93,20 +93,36 @@ impl<'l> Contacts<'l> {
         found
     }
 
-    /// What a limit does in a phase, as its values show: an arc may be there that nothing keeps,
-    /// where others say the same.
-    pub fn seen(&self, j: usize, limit: usize) -> Arc {
+    /// What a limit does in a phase, as its values show, from which parts of the phase on: an arc
+    /// may be there that nothing keeps, where others say the same, or where its inequality is
+    /// active at the nodes.
+    pub fn seen(&self, j: usize, limit: usize) -> Vec<(f64, Arc)> {
         let known = self.located.structure.phases[j].contacts[limit];
-        let (problem, row) = (&self.located.chain.phases[j], self.row(j, limit));
-        let bounds = problem.path_bounds[row];
-        let values = path_values(problem, &self.located.outcome.phases[j].trajectory, row);
-        let is_at =
-            |bound: f64| values.iter().all(|it| (it - bound).abs() <= SEEN * self.ranges[limit]);
-        match known {
-            Arc::Free if is_at(bounds.lower) => Arc::Lower,
-            Arc::Free if is_at(bounds.upper) => Arc::Upper,
-            known => known,
+        if known != Arc::Free {
+            return vec![(0.0, known)];
         }
+        let (problem, row) = (&self.located.chain.phases[j], self.row(j, limit));
+        let trajectory = &self.located.outcome.phases[j].trajectory;
+        let (bounds, time) = (problem.path_bounds[row], &trajectory.time);
+        let values = path_at_ends(problem, trajectory);
+        let is_at = |bound: f64, k: usize| {
+            let off = |k: usize| (values.column(row)[k] - bound).abs();
+            let before = k.saturating_sub(1);
+            off(k) <= SEEN * self.ranges[limit] && off(before) <= SEEN * self.ranges[limit]
+        };
+        let mut pieces: Vec<(f64, Arc)> = Vec::new();
+        for k in 0..time.len() - 1 {
+            let arc = match () {
+                () if is_at(bounds.lower, k) => Arc::Lower,
+                () if is_at(bounds.upper, k) => Arc::Upper,
+                () => Arc::Free,
+            };
+            if pieces.last().is_none_or(|it| it.1 != arc) {
+                let part = (time[k] - time[0]) / (time[time.len() - 1] - time[0]);
+                pieces.push((part, arc));
+            }
+        }
+        pieces
     }
 
     /// Whether a run is what is left of an arc or a touch point at that end of the phase.

@@ -51,11 +51,12 @@ pub(crate) use contacts::Contacts;
 pub(crate) use joint::{Joint, Part};
 pub(crate) use mending::First;
 pub(crate) use parts::{halved_in_phases, locate_in_phases, polished_in_phases};
+pub(crate) use path_values::path_at_ends;
 pub(crate) use polynomials::beyond_bounds;
 pub(crate) use range::{Range, ranges};
 pub(crate) use repair::{is_attracted, jumps_in_the_end, wrong_sign};
 pub(crate) use replayed::replayed;
-pub(crate) use structure::variation;
+pub(crate) use structure::variations;
 pub(crate) use tuning::certificate as certificate_limits;
 
 use fdcc_compiler::{Model, limits};

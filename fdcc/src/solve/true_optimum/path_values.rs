@@ -1,5 +1,6 @@
-//! Path conditions of a phase and their derivatives, at the beginning of each interval.
+//! Path conditions of a phase and their derivatives, at the ends of each interval.
 
+use super::polynomials::polynomials;
 use fdcc_runtime::problem::{Columns, Problem};
 use fdcc_runtime::solution::Trajectory;
 
@@ -57,5 +58,39 @@ pub(super) fn slopes(
     match pattern.entries.iter().position(|it| *it == place) {
         Some(entry) => jacobian.column(entry).to_vec(),
         None => vec![0.0; count],
+    }
+}
+
+/// All path conditions at the end of each interval.
+pub(crate) fn path_at_ends(problem: &Problem, trajectory: &Trajectory) -> Columns {
+    let (path, time) = (&*problem.path, &trajectory.time);
+    let [first, last] = [time[0], time[time.len() - 1]];
+    let mut inputs = Columns::new(path.layout().point_inputs(), time.len() - 1);
+    for (tau, time) in inputs.column_mut(0).iter_mut().zip(&time[1..]) {
+        *tau = (time - first) / (last - first);
+    }
+    for (at, column) in trajectory.states.iter().take(problem.layout.x).enumerate() {
+        inputs.column_mut(1 + at).copy_from_slice(&column[1..]);
+    }
+    for at in 0..trajectory.controls.len() {
+        let column = controls_at_ends(trajectory, at);
+        inputs.column_mut(1 + problem.layout.x + at).copy_from_slice(&column);
+    }
+    let mut values = Columns::new(path.outputs(), time.len() - 1);
+    path.value(&inputs, &trajectory.parameters, &mut values);
+    values
+}
+
+/// A control at the end of each interval.
+fn controls_at_ends(trajectory: &Trajectory, control: usize) -> Vec<f64> {
+    let (time, nodes) = (&trajectory.time, trajectory.nodes.as_ref());
+    let intervals = time.len() - 1;
+    match nodes {
+        Some(nodes) if nodes.time.len() == time.len() => nodes.values[control][1..].to_vec(),
+        Some(nodes) if nodes.time.len() % intervals == 0 => {
+            let pieces = polynomials(trajectory, control).into_iter();
+            pieces.map(|piece| piece.at(piece.ends[1])).collect()
+        }
+        _ => trajectory.controls[control].clone(),
     }
 }

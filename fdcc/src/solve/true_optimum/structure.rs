@@ -7,8 +7,8 @@ use super::range::{Range, ranges};
 use super::tracks::Track;
 use super::tuning::repair::NOTHING;
 use super::tuning::structure::{
-    AT_END, BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, LOSS, MOST_HALVINGS, SAME_SWITCH,
-    SHORTEST, SHORTEST_ARC, TRIED, TRIED_BESIDE,
+    AT_END, BEYOND, FEWEST_INTERVALS, HALVINGS, INACCURATE, LOSS, MOST_HALVINGS, PART_OF_LARGEST,
+    SAME_SWITCH, SHORTEST, SHORTEST_ARC, TRIED, TRIED_BESIDE,
 };
 use fdcc_compiler::{Arc, Mode, PhaseOfModes};
 use fdcc_runtime::problem::{ControlShape, Problem};
@@ -212,11 +212,11 @@ impl Structure {
         let [first, last] = self.ends();
         let ranges = ranges(&between.controls, located);
         let beyond = between.method.accuracy.map_or(BEYOND, |it| 0.5 * it);
-        let of = |outcome: &Outcome| {
-            let varies = variation(outcome) / (INACCURATE * (last - first));
+        let of = |(outcome, varies): (&Outcome, f64)| {
+            let varies = varies / (INACCURATE * (last - first));
             varies.max(beyond_bounds(&ranges, &outcome.trajectory) / beyond)
         };
-        located.iter().map(of).collect()
+        located.iter().zip(variations(located)).map(of).collect()
     }
 
     /// With graded intervals, and then with shorter ones, where the objective loses these parts of
@@ -292,15 +292,22 @@ impl Structure {
     }
 }
 
-/// By how much of its size the Hamiltonian changes inside of a phase, times its duration; 0 where
-/// time matters by itself.
-pub(crate) fn variation(phase: &Outcome) -> f64 {
+/// By how much of its size the Hamiltonian changes inside of each phase, times its duration; 0
+/// where time matters by itself. While something rests all of its terms are rounding: beside those of the
+/// other phases they count as a small part of them.
+pub(crate) fn variations(phases: &[Outcome]) -> impl Iterator<Item = f64> {
+    let scales = phases.iter().map(|it| it.trajectory.hamiltonian.scale);
+    let least = PART_OF_LARGEST * scales.fold(0.0, f64::max);
+    phases.iter().map(move |it| variation(it, least))
+}
+
+fn variation(phase: &Outcome, least: f64) -> f64 {
     let (own, time) = (&phase.trajectory.hamiltonian, &phase.trajectory.time);
-    let least = own.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let lowest = own.values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = own.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let is_meant = own.is_constant && !own.is_noise;
     let duration = time[time.len() - 1] - time[0];
-    if is_meant { (largest - least) / own.scale * duration } else { 0.0 }
+    if is_meant { (largest - lowest) / own.scale.max(least) * duration } else { 0.0 }
 }
 
 /// What is steep at an end is smooth on graded grids, and on shorter intervals; a singular arc is

@@ -54,6 +54,8 @@ pub(super) mod polish {
 }
 
 pub(super) mod structure {
+    /// The Hamiltonian of a phase has at least this part of the size that it has in another.
+    pub(crate) const PART_OF_LARGEST: f64 = 1e-8;
     /// A shorter phase, for the whole time, is dropped.
     pub(crate) const SHORTEST: f64 = 0.004;
     /// So is one of fewer intervals of the grid.
@@ -134,7 +136,7 @@ pub(super) mod contacts {
     /// least.
     pub(crate) const OF_BOUND: f64 = 0.1;
     /// It is at its bound where all of its values are nearer than this part of its range.
-    pub(crate) const SEEN: f64 = 1e-7;
+    pub(crate) const SEEN: f64 = 1e-5;
     /// A limit with two derivatives or more that is active on fewer intervals is touched.
     pub(crate) const FEWEST_OF_ARC: usize = 4;
     /// Where the motion is on a surface for so many intervals, it is held.

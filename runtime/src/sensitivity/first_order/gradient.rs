@@ -40,8 +40,8 @@ pub struct Sensitivity {
     pub resolution: f64,
     /// The same where the rest of what has decayed counts as all others do.
     pub resolution_of_rests: f64,
-    /// Of each quantity the largest sum of the sizes that its derivative is made of, and what counts
-    /// as 0 beside it; of one sum where `forward` is empty.
+    /// Of each quantity the largest sum of the sizes that its derivative is made of, and what
+    /// counts as 0 beside it; of one sum where `forward` is empty.
     pub(crate) sizes: Vec<[f64; 2]>,
     /// The derivative of each state at the end by each quantity; empty like `forward`.
     pub end: Vec<Vec<f64>>,
@@ -117,16 +117,7 @@ pub(super) fn along_own_steps(
     let forward = super::along(&lineariser, &objective, &directions, &end);
     let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));
     let size = super::size(&lineariser, &objective, &directions, &end).max(all);
-    let starts = super::start(&lineariser, &directions);
-    let along_each = quantities.iter().take(weights.ncols()).enumerate().map(|(at, quantity)| {
-        let parts = [starts.column(at), end.column(at), directions.parameters.column(at)];
-        let by = parts.iter().flat_map(|part| part.iter().copied()).collect::<Vec<f64>>().into();
-        Direction { value: one_sided::value(system, controls, quantity), by }
-    });
-    let ends: Vec<f64> = system.start.iter().chain(&simulation.end).copied().collect();
-    let slopes = [&objective.by_start, &objective.by_end, &objective.by_parameters];
-    let slopes: Vec<f64> = slopes.into_iter().flat_map(|row| row.iter().copied()).collect();
-    let kink = objective_kink(&lineariser, &slopes, &ends.into(), along_each);
+    let kink = kink_of_objective(&pieces, &objective, &simulation, (quantities, &directions, &end));
     Ok(Sensitivity {
         value: objective.value,
         agreement: agreement(&forward, along.as_slice(), size),
@@ -141,6 +132,26 @@ pub(super) fn along_own_steps(
         kink: kink_met(&lineariser, tape, &parameters(quantities), &before_events).or(kink),
         simulation,
     })
+}
+
+/// A kink of the objective at the end.
+fn kink_of_objective(
+    pieces: &LinearTape,
+    objective: &Objective,
+    simulation: &Simulation,
+    (quantities, directions, end): (&[Quantity], &Directions, &DMatrix<f64>),
+) -> Option<Kink> {
+    let (lineariser, system) = (pieces.lineariser, pieces.lineariser.system);
+    let starts = super::start(lineariser, directions);
+    let along_each = quantities.iter().take(end.ncols()).enumerate().map(|(at, quantity)| {
+        let parts = [starts.column(at), end.column(at), directions.parameters.column(at)];
+        let by = parts.iter().flat_map(|part| part.iter().copied()).collect::<Vec<f64>>().into();
+        Direction { value: one_sided::value(system, lineariser.controls, quantity), by }
+    });
+    let ends: Vec<f64> = system.start.iter().chain(&simulation.end).copied().collect();
+    let slopes = [&objective.by_start, &objective.by_end, &objective.by_parameters];
+    let slopes: Vec<f64> = slopes.into_iter().flat_map(|row| row.iter().copied()).collect();
+    objective_kink(lineariser, &slopes, &ends.into(), along_each)
 }
 
 /// Each is as large as another at least.

@@ -25,6 +25,7 @@ SWEEP = ["sweep", "block.fdc", "mu=0.1,0.2,0.3", "--out", "all", "--trajectories
 # One look at each is enough.
 PRODUCT = ["sweep", "block.fdc", "mu=0.05:0.05:0.6", "m=0.5:0.25:3", "sigma=0.1", "N=50", "--product",
            "--out", "product", "--log", "none"]
+# The first model of the page is the block.
 FOLLOW = (ROOT / "docs" / "real-time.md").read_text().split("```fdc\n")[1].split("```")[0]
 DARK = ["--force-dark-mode", "--blink-settings=preferredColorScheme=0"]
 
@@ -72,6 +73,8 @@ def main():
             for width, height in SIZES:
                 picture = FOLDER / f"{name}-{width}.png"
                 shoot(folder / f"{name}.html", picture, width, height)
+        run("solve", str(ROOT / "models" / "racecar.fdc"), "--out", "certified", "--log", "none")
+        shoot(folder / "certified" / "racecar.html", FOLDER / "course-1200.png", 1200, 1500)
         (folder / "follow.fdc").write_text(FOLLOW)
         run("mpc", "follow.fdc", "--steps", "60", "--out", ".")
         shoot(folder / "block.mpc.html", FOLDER / "mpc-1200.png", 1200, 820)

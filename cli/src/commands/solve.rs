@@ -53,7 +53,7 @@ impl Solve {
     fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
         let headline = |chain: &Chain| {
             if !self.options.json {
-                output::print(&verdict::headline(chain));
+                output::print_lines(&verdict::headline(chain));
             }
         };
         let mut solved = solver::solve(model, &self.options, begin, Level::Short, headline)?;
@@ -77,7 +77,7 @@ impl Solve {
         if self.options.json {
             output::print(&output::json(&solved.document));
         } else {
-            output::print(&verdict::verdict(solved));
+            output::print_lines(&verdict::verdict(solved));
         }
         solver::wrote(written, self.options.json, solved.exit(self.confirmed), model.source())
     }

@@ -34,6 +34,7 @@ pub mod units;
 pub mod verification;
 pub mod verified;
 pub mod whole;
+mod wrap;
 
 use crate::exit::Exit;
 use std::io::{ErrorKind, IsTerminal, Write};
@@ -52,6 +53,11 @@ pub fn print(text: &str) {
         let printed = stream.write_all(text.as_bytes()).and_then(|()| stream.flush());
         note(printed);
     }
+}
+
+/// The same with lines that go on between words where a terminal ends.
+pub fn print_lines(text: &str) {
+    print(&wrap::for_terminal(text));
 }
 
 /// Remembers the first failure of the standard output.

@@ -10,13 +10,16 @@
 //! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces,
 //! which says on which side of 0 it is. So the right side is smooth on each side and goes on
 //! smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a
-//! surface. Where `e` is the function of a surface, the selector of that surface says it already.
+//! surface. Where `e` is the function of a surface, the selector of that surface says it already,
+//! unless the right side has no value beyond: `sqrt(-x)` above 0 is none, and a step that crosses
+//! `x = 0` has a stage there.
 
 use super::function::VectorFunction;
 use crate::expressions::blend::sides;
 use crate::expressions::graph::builtins::Domain;
 use crate::expressions::graph::{Expr, ExprId, Graph};
 use fdcc_runtime::problem::Origin;
+use std::collections::HashSet;
 
 /// The kinks of a function, each after those inside it.
 #[derive(Default)]
@@ -36,12 +39,14 @@ pub(super) fn take_out(
 ) -> Kinks {
     let mut kinks = Kinks::default();
     let mut rewritten = Vec::new();
+    let ends = ends_of_partial(graph, &flow.outputs);
     for (&output, origin) in flow.outputs.iter().zip(&flow.origins) {
         let root = graph.rewrite(&[output], |graph, original, rebuilt| {
             let Some((zero, [below, above])) = sides(graph, original, rebuilt) else {
                 return rebuilt;
             };
-            match side_of(graph, zero, flow, switching, (&mut kinks, origin)) {
+            let surfaces = if ends.contains(&original) { &[][..] } else { switching };
+            match side_of(graph, zero, flow, [surfaces, switching], (&mut kinks, origin)) {
                 Some(selector) => {
                     let middle = graph.number(0.0);
                     let side = graph.select_le(selector, middle, below, above);
@@ -54,6 +59,20 @@ pub(super) fn take_out(
     }
     flow.outputs = rewritten;
     kinks
+}
+
+/// What functions are made of that have no value below 0, such as `sqrt` and `log`.
+fn ends_of_partial(graph: &Graph, outputs: &[ExprId]) -> HashSet<ExprId> {
+    let all = graph.reachable(outputs).into_iter();
+    let operands = all.filter_map(|id| match graph.expr(id) {
+        Expr::Call(builtin, operands) => match builtin.row().domain {
+            Domain::NonNegative(_) | Domain::Positive(_) => Some(operands),
+            Domain::All | Domain::NonZero(_) | Domain::Unit(_) => None,
+        },
+        _ => None,
+    });
+    let operands: Vec<ExprId> = operands.flatten().copied().collect();
+    graph.reachable(&operands).into_iter().collect()
 }
 
 /// `side` where the kink has a place; no number where it has none: `max(log(x), 0)` of a negative
@@ -77,7 +96,7 @@ fn side_of(
     graph: &mut Graph,
     zero: ExprId,
     flow: &VectorFunction,
-    switching: &[Option<ExprId>],
+    [surfaces, switching]: [&[Option<ExprId>]; 2],
     (kinks, origin): (&mut Kinks, &Origin),
 ) -> Option<ExprId> {
     let layout = flow.layout;
@@ -86,7 +105,7 @@ fn side_of(
     if !graph.inputs_of(&[zero]).iter().any(is_moved) {
         return None;
     }
-    if let Some(surface) = switching.iter().position(|psi| *psi == Some(zero)) {
+    if let Some(surface) = surfaces.iter().position(|psi| *psi == Some(zero)) {
         return Some(graph.input((first + surface) as u32));
     }
     let known = kinks.zeros.iter().position(|known| *known == zero);

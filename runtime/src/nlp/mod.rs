@@ -338,6 +338,19 @@ pub struct Solution {
     pub counts: Counts,
 }
 
+impl Solution {
+    /// The same without variables and multipliers, which are as many as all phases have.
+    pub fn without_vectors(&self) -> Self {
+        Solution {
+            status: self.status.clone(),
+            v: Vec::new(),
+            multipliers: Multipliers::default(),
+            descent: None,
+            ..*self
+        }
+    }
+}
+
 /// The constraint that is violated most, and by how much.
 pub fn worst_constraint(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
     violations(nlp, v).into_iter().enumerate().fold(None, |worst, (row, violation)| match worst {

@@ -167,7 +167,7 @@ fn phase(
     let solution = Solution {
         v: shape.own(&whole.v),
         multipliers: own_multipliers(&shape, &whole.multipliers),
-        ..whole.clone()
+        ..whole.without_vectors()
     };
     let own = nlp.phase_at(at, &whole.v);
     let mut trajectory = Trajectory::new(problem, own, &solution);

@@ -61,6 +61,12 @@ function drawEnds(chart, paths) {
   });
 }
 
+/// A range with room for borders beside a path.
+function widened({ low, high }) {
+  const room = 0.1 * (high - low);
+  return { low: low - room, high: high + room };
+}
+
 /// The pieces of the borders of path conditions, in the units of the axes.
 function drawBorders(chart, segments) {
   const { ctx, bbox } = chart;
@@ -105,6 +111,7 @@ function drawPortrait(element, over, of, isToScale, more = {}) {
   const paths = of.flatMap((figure, hue) => paired(over, figure).map((path) => hued(path, hue)));
   const height = Math.round(Math.min(Math.max(element.clientWidth * 0.55, 260), 560));
   let [x, y] = ["x", "y"].map((key) => rangeOf(paths.flatMap((path) => path[key]), []));
+  if (more.borders?.length) [x, y] = [x, y].map(widened);
   if (isToScale) [x, y] = toScale(x, y, element.clientWidth - AXIS, height - 40);
   element.replaceChildren();
   element.setAttribute("role", "img");

@@ -164,7 +164,9 @@ impl<'a> Elaborator<'a> {
     }
 
     fn objective(&mut self, sense: Sense, keyword: Span, value: &'a Expr) {
+        let before = self.diagnostics.len();
         let value_of = self.evaluate_for(Role::Objective, Context::OBJECTIVE, value);
+        self.along_the_time(before, value);
         if let Some((place, _)) = &self.model.objective {
             let found = Diagnostic::new(
                 Code::DuplicateName,
@@ -180,6 +182,18 @@ impl<'a> Elaborator<'a> {
         self.model.sense = if sense == Sense::Minimize { 1.0 } else { -1.0 };
         if let Some(part) = self.expect_number(&value_of, value.span) {
             self.model.objective = Some((Place { name: word.into(), span: value.span }, part));
+        }
+    }
+
+    /// Where a control stands in an objective without `integral`, all of it is meant to be added up.
+    fn along_the_time(&mut self, before: usize, value: &Expr) {
+        let whole = text::expr(value);
+        let has_times = ["integral(", "(end)", "(start)", "sum("].iter().any(|it| whole.contains(it));
+        for found in self.diagnostics[before..].iter_mut().filter(|_| !has_times) {
+            let is_meant = found.help.as_ref().is_some_and(|it| it.starts_with("write `integral("));
+            if is_meant {
+                found.help = Some(format!("write `integral({whole})`"));
+            }
         }
     }
 

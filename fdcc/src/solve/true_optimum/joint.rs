@@ -162,16 +162,25 @@ impl Slice {
         };
         // The multipliers of conditions that nobody wrote are told to nobody.
         let starts = phases[0].trajectory.end_multipliers.drain(..added).collect();
-        let mut solution = outcome.solution.clone();
+        // All phases together have as many phases times as many numbers.
+        let mut solution = outcome.solution.without_vectors();
         solution.multipliers.constraints = self.multipliers(joint);
         let mut located = Located {
             joint: Arc::clone(joint),
             chain: Chain {
                 phases: chain.phases[self.phases].to_vec(),
                 links: chain.links[self.links].to_vec(),
-                ..chain.clone()
+                name: chain.name.clone(),
+                unknowns: chain.unknowns.clone(),
             },
-            outcome: ChainOutcome { solution, phases, ..outcome.clone() },
+            outcome: ChainOutcome {
+                solution,
+                phases,
+                sigma: outcome.sigma.clone(),
+                limiting: outcome.limiting.clone(),
+                attempts: outcome.attempts.clone(),
+                ..*outcome
+            },
             structure: of.structure.clone(),
             beside: Vec::new(),
             starts,

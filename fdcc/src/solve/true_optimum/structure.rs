@@ -293,8 +293,8 @@ impl Structure {
 }
 
 /// By how much of its size the Hamiltonian changes inside of each phase, times its duration; 0
-/// where time matters by itself. While something rests all of its terms are rounding: beside those of the
-/// other phases they count as a small part of them.
+/// where time matters by itself. While something rests all of its terms are rounding: beside those
+/// of the other phases they count as a small part of them.
 pub(crate) fn variations(phases: &[Outcome]) -> impl Iterator<Item = f64> {
     let scales = phases.iter().map(|it| it.trajectory.hamiltonian.scale);
     let least = PART_OF_LARGEST * scales.fold(0.0, f64::max);

@@ -408,3 +408,22 @@ fn enormous_numbers_end_with_an_honest_status() {
         assert!(statuses.split(' ').any(|it| it == found), "{name}: {found}");
     }
 }
+
+/// Where nothing is searched an unknown is a number like a parameter, within its bounds.
+#[test]
+fn unknowns_are_given_values() {
+    let run = "param v = 2 [m/s]\nfree T in [1, 9] [min] guess 3\ntime t in [0, T] [min]\n\
+               state x [m] start 0\ndynamics { x' = v }\nminimize x(end)\n";
+    let folder = folder("simulate_unknowns", &[("run.fdc", run.as_bytes())]);
+    let end = |set: &str| {
+        let output = fdcc(&folder, &["simulate", "run.fdc", "--json", "--set", set], "");
+        number(&json(&output)["end"]["x"])
+    };
+    assert_eq!([end("v=2"), end("T=4"), end("T=120[s]")].map(f64::round), [360.0, 480.0, 240.0]);
+    let grad = fdcc(&folder, &["grad", "run.fdc", "--json", "--set", "T=4"], "");
+    assert_eq!(number(&json(&grad)["gradient"]["v"]).round(), 240.0);
+    let far = fdcc(&folder, &["simulate", "run.fdc", "--set", "T=10"], "");
+    assert!(stderr(&far).contains("`T` must be in [1, 9] min, not 10"), "{}", stderr(&far));
+    let solve = fdcc(&folder, &["solve", "run.fdc", "--set", "T=4"], "");
+    assert!(stderr(&solve).contains("`T` is an unknown"), "{}", stderr(&solve));
+}

@@ -63,7 +63,7 @@ fn numbers_on_the_command_line_are_in_declared_units() {
         assert!((number(&document["method"]["sigma"]) - 1e-3).abs() < 1e-15, "{document}");
     }
     let refused = solve(&["--set", "gap=60"]);
-    assert!(stderr(&refused).contains("`gap` must be in [1, 50] mm"), "{}", stderr(&refused));
+    assert!(stderr(&refused).contains("`gap` must be in [1, 50] mm, not "), "{}", stderr(&refused));
     let refused = solve(&["--method", "sigma=1[mm]"]);
     assert!(stderr(&refused).contains("`sigma` is in mm/s"), "{}", stderr(&refused));
 }

@@ -101,7 +101,7 @@ impl Driven {
         let with = |model: &fdcc::Model, controls| {
             let values: Vec<(&str, Value)> =
                 values.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
-            model.with_all(&values).map(|model| Driven { model, controls })
+            model.driven_with(&values).map(|model| Driven { model, controls })
         };
         Ok(match driver {
             None => with(model, Followed::Known(Controls::Guess)),

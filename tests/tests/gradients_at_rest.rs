@@ -78,6 +78,19 @@ dynamics { p' = v  v' = (-p.x + 400*(p.y - p.x), -p.y + 400*(p.x - p.y)) }";
     expect(text, "p.x(end)", "a", (10.0 * 801.0_f64.sqrt()).cos(), 1.0);
 }
 
+/// Fast states that follow a slow one: along explicit steps of the slow one they would grow.
+#[test]
+fn fast_states_at_rest_stay_there() {
+    for (k, last) in [(100.0_f64, 1.0_f64), (300.0, 1.0), (1e5, 100.0)] {
+        let text = format!(
+            "param a = 0\ntime t in [0, {last}]\nstate z start 0\nstate y start 0\n\
+             dynamics {{ z' = a  y' = {k}*(z - y) }}"
+        );
+        let expected = last - (1.0 - (-k * last).exp()) / k;
+        expect(&text, "y(end)", "a", expected, expected);
+    }
+}
+
 #[test]
 fn second_derivatives_are_resolved_too() {
     let text = "param p = 0

@@ -109,7 +109,7 @@ impl Driven {
             driver.replay.adapt(meaning);
             Ok::<(), Failure>(())
         })?;
-        Ok((self.changes.apply(&adapted).map_err(Failure::Usage)?, driver))
+        Ok((self.changes.apply_to_run(&adapted).map_err(Failure::Usage)?, driver))
     }
 
     /// The model with the parameters of the solution that drives its phases, changed; the command
@@ -132,7 +132,7 @@ impl Driven {
             meaning.restore_params(&params);
             Ok::<(), Failure>(())
         })?;
-        Ok((self.changes.apply(&adapted).map_err(Failure::Usage)?, saved))
+        Ok((self.changes.apply_to_run(&adapted).map_err(Failure::Usage)?, saved))
     }
 
     /// The controls for a system. What is odd about them is said on the standard error.

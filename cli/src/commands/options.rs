@@ -36,10 +36,22 @@ impl Changes {
 
     /// Applies them, or says what is wrong with one.
     pub fn apply(&self, model: &Model) -> Result<Model, String> {
+        self.applied(model, |_| false)
+    }
+
+    /// The same where nothing is searched: an unknown is given its value like a parameter.
+    pub fn apply_to_run(&self, model: &Model) -> Result<Model, String> {
+        self.applied(model, |name| model.has_unknown(name))
+    }
+
+    fn applied(&self, model: &Model, is_unknown: impl Fn(&str) -> bool) -> Result<Model, String> {
         model.changed(|meaning| {
             for text in &self.set {
                 let (name, value) = split(text, "--set NAME=VALUE")?;
-                meaning.set_param(name, value)?;
+                match is_unknown(name) {
+                    true => meaning.set_unknown(name, value)?,
+                    false => meaning.set_param(name, value)?,
+                }
             }
             for text in &self.method {
                 let (key, value) = split(text, "--method KEY=VALUE")?;

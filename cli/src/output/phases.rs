@@ -5,6 +5,7 @@ use super::hamiltonian_check::HamiltonianCheck;
 use super::modes::Span;
 use super::named::Named;
 use super::picture::{Before, PathCondition};
+use super::plots::Drawn;
 use super::verification::Verification;
 use serde::{Serialize, Serializer};
 
@@ -36,6 +37,8 @@ struct Shown<'d> {
     bounds: &'d Named<[f64; 2]>,
     #[serde(skip_serializing_if = "Named::is_empty")]
     path: &'d Named<PathCondition>,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    plots: &'d Named<Drawn>,
     #[serde(skip_serializing_if = "Option::is_none")]
     verification: Option<&'d Verification>,
 }
@@ -61,6 +64,7 @@ impl Serialize for Phase {
             sigmas: &of.method.sigmas,
             bounds: &of.picture.bounds,
             path: &of.picture.path,
+            plots: &of.picture.plots,
             verification: of.verification.as_ref(),
         };
         shown.serialize(serializer)

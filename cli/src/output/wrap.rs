@@ -48,7 +48,12 @@ mod tests {
     #[test]
     fn a_long_line_goes_on_under_its_text() {
         let line = " true  replayed: objective 5.3   `x` differs by 1e-9   all conditions met\n";
-        let expected = " true  replayed: objective 5.3   `x`\n       differs by 1e-9   all conditions\n       met\n";
+        let lines = [
+            " true  replayed: objective 5.3   `x`",
+            "       differs by 1e-9   all conditions",
+            "       met\n",
+        ];
+        let expected = lines.join("\n");
         assert_eq!(hanging(line, 40), expected);
         assert_eq!(hanging(line, 80), line);
         let word = format!(" wrote {}\n", "x".repeat(60));

@@ -158,7 +158,7 @@ pub fn bar(level: Level, solves: usize) -> ProgressBar {
     progress(
         ProgressBar::new(solves as u64),
         level,
-        "{spinner} {elapsed} {pos}/{len} {bar:20} {msg}",
+        "{spinner} {elapsed} {pos}/{len} {bar:20} {eta} left {msg}",
     )
 }
 

@@ -1,8 +1,8 @@
 //! What the command line may change: parameters by `--set`, settings of the method by `--method`.
 
 use crate::expressions::graph::evaluate;
-use crate::model::Model;
 use crate::model::numbers::Numbers;
+use crate::model::{Free, Model, Param, Place, Range};
 use crate::settings::conflicts::misfit;
 use crate::settings::{Given, Refused, keys, nearest_key, nearest_word, set};
 use crate::syntax::closest;
@@ -35,7 +35,35 @@ impl Model {
         let Some(index) = self.params.iter().position(|param| param.place.name == name) else {
             return Err(self.no_param(name));
         };
-        let own = self.unit_of_param(index).cloned().unwrap_or_else(|| plain_number(name));
+        let Param { place, range, .. } = self.params[index].clone();
+        let value = self.limited(&place, range, text, given)?;
+        self.give(index, value);
+        Ok(())
+    }
+
+    /// Gives an unknown the value that a simulation takes for it, such as `2` or `3[min]`; a plain
+    /// number is in its declared unit.
+    pub fn set_unknown(&mut self, name: &str, value: &str) -> Result<(), String> {
+        let Some(at) = self.frees.iter().position(|it| it.place.name == name) else {
+            return Err(self.no_param(name));
+        };
+        let Free { place, range, .. } = self.frees[at].clone();
+        let value = self.limited(&place, range, value, parse_quantity(value)?)?;
+        self.set_free(name, value);
+        Ok(())
+    }
+
+    /// A value in SI within the range of a name.
+    fn limited(
+        &self,
+        place: &Place,
+        range: Range,
+        text: &str,
+        given: Quantity,
+    ) -> Result<f64, String> {
+        let name = &place.name;
+        let unit = self.units.iter().find(|own| own.span == place.span);
+        let own = unit.cloned().unwrap_or_else(|| plain_number(name));
         if let Some(other) = self.other_unit(&own).filter(|_| given.dimension.is_none()) {
             return Err(format!(
                 "`{name}` has no unit of its own, and the model writes {} for what it measures: \
@@ -44,15 +72,17 @@ impl Model {
             ));
         }
         let value = in_unit(&own, text, given)?;
-        let range = self.params[index].range;
         let limits = [range.lower, range.upper].map(|limit| self.of_params(limit));
         if value < limits[0] || value > limits[1] {
             let shown = limits.map(|limit| number(limit / own.scale));
             let unit = if own.unit.is_empty() { String::new() } else { format!(" {}", own.unit) };
-            return Err(format!("`{name}` must be in [{}, {}]{unit}", shown[0], shown[1]));
+            let its = number(rounded(value / own.scale));
+            return Err(format!(
+                "`{name}` must be in [{}, {}]{unit}, not {its}",
+                shown[0], shown[1]
+            ));
         }
-        self.give(index, value);
-        Ok(())
+        Ok(value)
     }
 
     /// A value for a parameter or a width with the unit in which it is read, if that is not the one
@@ -193,6 +223,12 @@ impl Model {
     }
 
     fn no_param(&self, name: &str) -> String {
+        if self.frees.iter().any(|it| it.place.name == name) {
+            return format!(
+                "`{name}` is an unknown, which is chosen in its bounds; its `guess` in the model \
+                 says where a solve begins"
+            );
+        }
         let names = || self.params.iter().map(|param| param.place.name.as_str());
         match closest(name, names()) {
             Some(near) => format!("there is no parameter `{name}`; did you mean `{near}`?"),

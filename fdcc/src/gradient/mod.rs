@@ -13,8 +13,10 @@ pub use quantities::{By, NotBy};
 use crate::error::Error;
 use crate::model::Model;
 use fdcc_runtime::sensitivity::{Quantity, finer, hessian};
-use fdcc_runtime::simulate::{Controls, Options as Accuracy, Simulation, System, simulate};
-use tuning::second::{MOST_HALVINGS, SETTLED};
+use fdcc_runtime::simulate::{
+    Controls, Integrator, Options as Accuracy, Simulation, System, simulate,
+};
+use tuning::second::{MOST_EXPLICIT, MOST_HALVINGS, SETTLED};
 
 /// The derivative of the objective of the true system by parameters, unknowns, starts or controls.
 ///
@@ -76,31 +78,32 @@ impl Gradient {
     ///
     /// Why there are none, in words.
     pub fn second(&self) -> Result<Vec<Vec<f64>>, String> {
-        let found = self.resolved_hessian();
-        let why = "there are no second derivatives here: none are known where infinitely many \
-                   jumps come to rest, where a `Dir` moves, by a start that leaves a surface on \
-                   which it slides, and where a kink is met together with something else";
-        found.ok_or(why.to_string())
+        let found = self.resolved_hessian().ok_or(why_none())?;
+        found.ok_or_else(|| {
+            "steps of half the length lead to other second derivatives: none are known".into()
+        })
     }
 
-    /// Along steps that are halved until it stays the same.
-    fn resolved_hessian(&self) -> Option<Vec<Vec<f64>>> {
+    /// Along steps that are halved until it stays the same, with the stiff method where it does not
+    /// soon; `None` inside where it never does.
+    fn resolved_hessian(&self) -> Option<Option<Vec<Vec<f64>>>> {
         let by = quantities(&self.by);
         let of = |it: &Simulation| hessian(&self.system, &self.controls, it, &by);
         let mut found = of(self.simulation())?;
-        let mut before: Option<Simulation> = None;
-        for _ in 0..MOST_HALVINGS {
-            let last = before.as_ref().unwrap_or(self.simulation());
-            let options = Accuracy { tape: true, ..finer(&self.accuracy, last) };
+        let mut options = Accuracy { tape: true, ..finer(&self.accuracy, self.simulation()) };
+        for halving in 0..MOST_HALVINGS {
             let next = simulate(&self.system, &self.controls, &options);
             let Some(other) = of(&next) else { break };
-            let is_settled = is_same(&found, &other);
-            (found, before) = (other, Some(next));
-            if is_settled {
-                break;
+            if is_same(&found, &other) {
+                return Some(Some(other));
             }
+            options = finer(&options, &next);
+            if halving == MOST_EXPLICIT && options.integrator == Integrator::Automatic {
+                options.integrator = Integrator::Stiff;
+            }
+            found = other;
         }
-        Some(found)
+        Some(None)
     }
 
     /// The trajectory, as far as it came.
@@ -112,12 +115,19 @@ impl Gradient {
     }
 }
 
+/// Where there are no second derivatives.
+fn why_none() -> String {
+    "there are no second derivatives here: none are known where infinitely many jumps come to \
+     rest, where a `Dir` moves, by a start that leaves a surface on which it slides, and where a kink is \
+     met together with something else"
+        .into()
+}
+
 /// Whether two matrices are the same, each entry relative to the largest of its row and column.
 fn is_same(one: &[Vec<f64>], other: &[Vec<f64>]) -> bool {
     let size = |at: usize| other[at].iter().fold(0.0, |size: f64, it| size.max(it.abs()));
-    let is_near = |i: usize, j: usize| {
-        (one[i][j] - other[i][j]).abs() <= SETTLED * size(i).min(size(j)) || one[i][j].is_nan()
-    };
+    let is_near =
+        |i: usize, j: usize| (one[i][j] - other[i][j]).abs() <= SETTLED * size(i).min(size(j));
     (0..one.len()).all(|i| (0..one.len()).all(|j| is_near(i, j)))
 }
 

@@ -18,8 +18,10 @@ pub(super) mod exact {
 }
 
 pub(super) mod second {
-    /// So often steps are halved for second derivatives,
-    pub(crate) const MOST_HALVINGS: usize = 4;
+    /// So often steps of the explicit method are halved before the stiff one takes them,
+    pub(crate) const MOST_EXPLICIT: usize = 1;
+    /// and so often all are halved for second derivatives,
+    pub(crate) const MOST_HALVINGS: usize = 6;
     /// unless they change by less than this part.
     pub(crate) const SETTLED: f64 = 1e-6;
 }

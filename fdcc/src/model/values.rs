@@ -129,6 +129,40 @@ impl Model {
         Ok(model)
     }
 
+    /// The same, where names may also be those of unknowns: a simulation takes the guess of an
+    /// unknown for its value.
+    ///
+    /// ```
+    /// let model = fdcc::Model::from_text("run", "free T in [1, 9]
+    /// time t in [0, T]
+    /// state x start 0
+    /// dynamics { x' = 2 }
+    /// minimize x(end)")?;
+    /// let long = model.driven_with(&[("T", 4.0.into())])?;
+    /// assert_eq!(long.system()?.interval, [0.0, 4.0]);
+    /// assert!(model.driven_with(&[("T", 10.0.into())]).is_err(), "it is out of its bounds");
+    /// # Ok::<(), fdcc::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// As for [`with_all`](Model::with_all).
+    pub fn driven_with(&self, values: &[(&str, Value)]) -> Result<Model, Error> {
+        let (unknowns, others): (Vec<_>, Vec<_>) =
+            values.iter().cloned().partition(|(name, _)| self.has_unknown(name));
+        let mut model = self.with_all(&others)?;
+        for (name, value) in unknowns {
+            let meaning = Arc::make_mut(&mut model.meaning);
+            meaning.set_unknown(name, &value.to_string()).map_err(Error::Call)?;
+        }
+        Ok(model)
+    }
+
+    /// Whether an unknown has this name.
+    pub fn has_unknown(&self, name: &str) -> bool {
+        self.meaning.frees.iter().any(|it| it.place.name == name)
+    }
+
     /// Whether a parameter has this name.
     pub fn has_param(&self, name: &str) -> bool {
         self.meaning.params.iter().any(|param| param.place.name == name)

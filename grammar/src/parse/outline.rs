@@ -144,6 +144,7 @@ impl Marks {
     fn read_row(&mut self, pair: &Pair<'_, Rule>, rule: Rule, start: usize) {
         let row = match rule {
             Rule::parameter | Rule::constant | Rule::definition => Row::Number,
+            Rule::signal => Row::Alone,
             Rule::function => Row::Item("fn"),
             Rule::surface => Row::Item("surface"),
             Rule::state => Row::Item("state"),

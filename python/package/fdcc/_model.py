@@ -230,6 +230,8 @@ class Model:
             The relative tolerance of one step; 1e-10 if left out.
         time_limit
             Seconds after which it stops with the trajectory so far, as Ctrl-C does.
+        values
+            Of parameters and unknowns, in their declared units; by name, too: ``T=3``.
 
         >>> import fdcc, numpy as np
         >>> m = fdcc.compile("time t in [0, 2]  state v start 1  surface slip = v"

@@ -7,6 +7,8 @@ pub(super) mod resolved {
     /// Derivatives along steps of two lengths that differ by less than so many tolerances of a step
     /// are those of the system: a method of order 5 is 32 times as exact along the shorter.
     pub(crate) const TOLERANCES: f64 = 1e3;
+    /// So often steps of the explicit method are halved before the stiff one takes them.
+    pub(crate) const MOST_EXPLICIT: usize = 2;
     /// So often steps are halved, and so often for the digits of what has decayed to nothing.
     pub(crate) const MOST_HALVINGS: usize = 8;
     pub(crate) const FEW_HALVINGS: usize = 4;

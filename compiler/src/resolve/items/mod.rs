@@ -185,10 +185,12 @@ impl<'a> Elaborator<'a> {
         }
     }
 
-    /// Where a control stands in an objective without `integral`, all of it is meant to be added up.
+    /// Where a control stands in an objective without `integral`, all of it is meant to be added
+    /// up.
     fn along_the_time(&mut self, before: usize, value: &Expr) {
         let whole = text::expr(value);
-        let has_times = ["integral(", "(end)", "(start)", "sum("].iter().any(|it| whole.contains(it));
+        let has_times =
+            ["integral(", "(end)", "(start)", "sum("].iter().any(|it| whole.contains(it));
         for found in self.diagnostics[before..].iter_mut().filter(|_| !has_times) {
             let is_meant = found.help.as_ref().is_some_and(|it| it.starts_with("write `integral("));
             if is_meant {

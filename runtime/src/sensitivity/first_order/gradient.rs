@@ -40,8 +40,8 @@ pub struct Sensitivity {
     pub resolution: f64,
     /// The same where the rest of what has decayed counts as all others do.
     pub resolution_of_rests: f64,
-    /// Of each quantity the largest sum of the sizes that its derivative is made of, and what
-    /// counts as 0 beside it; of one sum where `forward` is empty.
+    /// Of each quantity the sum of the sizes that its derivative is made of at the end, and the
+    /// largest on the way, with what counts as 0 there; of one sum where `forward` is empty.
     pub(crate) sizes: Vec<[f64; 2]>,
     /// The derivative of each state at the end by each quantity; empty like `forward`.
     pub end: Vec<Vec<f64>>,
@@ -111,8 +111,10 @@ pub(super) fn along_own_steps(
         widen(&mut largest, s.column_iter().map(|it| it.amax()));
     });
     let forgotten = FORGOTTEN * costates.largest();
-    let sizes: Vec<[f64; 2]> =
-        on_the_way.into_iter().zip(largest).map(|(size, it)| [size, forgotten * it]).collect();
+    let last = costates.time.len() - 1;
+    let at_end: Vec<f64> = costates.pairing(last, &end).collect();
+    widen(&mut on_the_way, largest.into_iter().map(|it| forgotten * it));
+    let sizes: Vec<[f64; 2]> = at_end.into_iter().zip(on_the_way).map(Into::into).collect();
     let all = sizes.iter().flatten().copied().fold(0.0, f64::max);
     let forward = super::along(&lineariser, &objective, &directions, &end);
     let along = weights.tr_mul(&DMatrix::from_column_slice(adjoint.len(), 1, &adjoint));

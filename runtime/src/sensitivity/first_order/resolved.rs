@@ -8,13 +8,16 @@
 //! ```text
 //! beside: simulate with all quantities a little different
 //! no step longer than those of the trajectory beside it: derivatives
-//! repeat: halve all steps: derivatives, until they stay the same
+//! repeat: halve all steps: derivatives, until they stay the same; with the stiff method where they
+//!         do not soon, which damps what is beside the motion as fast as it is
 //! ```
 
 use super::gradient::{Sensitivity, along_own_steps};
 use super::quantity::Quantity;
-use crate::sensitivity::tuning::resolved::{BESIDE, FEW_HALVINGS, MOST_HALVINGS, TOLERANCES};
-use crate::simulate::{Controls, Options, Piece, Simulation, Status, System, simulate};
+use crate::sensitivity::tuning::resolved::{
+    BESIDE, FEW_HALVINGS, MOST_EXPLICIT, MOST_HALVINGS, TOLERANCES,
+};
+use crate::simulate::{Controls, Integrator, Options, Piece, Simulation, Status, System, simulate};
 
 /// Differentiates; nothing but the simulation where it does not reach the end or there is no
 /// objective.
@@ -24,19 +27,25 @@ pub fn gradient(
     options: &Options,
     quantities: &[Quantity],
 ) -> Result<Sensitivity, Box<Simulation>> {
-    let own = Options { paces: beside(system, controls, options), ..options.clone() };
-    let mut found = along_own_steps(system, controls, &own, quantities)?;
+    let mut options = Options { paces: beside(system, controls, options), ..options.clone() };
+    let mut found = along_own_steps(system, controls, &options, quantities)?;
     for halving in 0..MOST_HALVINGS {
-        let own = finer(options, &found.simulation);
-        let next = match along_own_steps(system, controls, &own, quantities) {
+        if halving == MOST_EXPLICIT && options.integrator == Integrator::Automatic {
+            options.integrator = Integrator::Stiff;
+        }
+        options = finer(&options, &found.simulation);
+        let next = match along_own_steps(system, controls, &options, quantities) {
             Ok(next) => next,
             Err(simulation) if matches!(simulation.status, Status::Stopped(_)) => {
                 return Err(simulation);
             }
             Err(_) => break,
         };
-        // What has decayed to nothing is worth a few halvings, and no doubt.
-        let [exact, resolution] = [false, true].map(|forgets| difference(&found, &next, forgets));
+        // What has decayed to nothing is worth a few halvings, and no doubt where nothing can have
+        // grown by the method alone.
+        let [exact, forgiving] = [false, true].map(|forgets| difference(&found, &next, forgets));
+        let is_damped = options.integrator == Integrator::Stiff && halving > MOST_EXPLICIT;
+        let resolution = if is_damped { forgiving } else { exact };
         found = Sensitivity { resolution, resolution_of_rests: exact, ..next };
         let left = if halving < FEW_HALVINGS { exact } else { resolution };
         if left <= TOLERANCES * options.rtol {
@@ -68,8 +77,8 @@ fn paces(simulation: &Simulation) -> Vec<[f64; 2]> {
     (0..steps.len()).map(|at| [steps[at][0], longest(at)]).collect()
 }
 
-/// The lengths of the steps of a trajectory in which everything is a little different; none beyond
-/// its end.
+/// The lengths of the steps of a trajectory in which everything is a little different; none where
+/// that does not reach the end, as where it grows beyond all bounds a moment sooner.
 fn beside(system: &System, controls: &Controls, options: &Options) -> Vec<[f64; 2]> {
     let mut turns = (1..).map(|at| (f64::from(at) * GOLDEN).fract() + 0.5);
     let mut moved = |value: f64| {
@@ -82,7 +91,8 @@ fn beside(system: &System, controls: &Controls, options: &Options) -> Vec<[f64; 
     let mut driven = controls.clone();
     driven.rows_mut().iter_mut().flatten().for_each(|it| *it = moved(*it));
     driven.stretch(system.interval, other.interval);
-    paces(&simulate(&other, &driven, &Options { tape: true, ..options.clone() }))
+    let found = simulate(&other, &driven, &Options { tape: true, ..options.clone() });
+    if matches!(found.status, Status::Completed) { paces(&found) } else { Vec::new() }
 }
 
 /// The multiples of the golden ratio are spread most evenly.
@@ -98,8 +108,9 @@ fn difference(one: &Sensitivity, other: &Sensitivity, forgets: bool) -> f64 {
         Some([size, _]) => *size,
         None => largest,
     };
-    let differences = one.adjoint.iter().zip(&other.adjoint).enumerate();
-    let differences = differences.map(|(at, (a, b))| match (a - b).abs() {
+    let ways = [(&one.adjoint, &other.adjoint), (&one.forward, &other.forward)];
+    let pairs = ways.into_iter().flat_map(|(a, b)| a.iter().zip(b).enumerate());
+    let differences = pairs.map(|(at, (a, b))| match (a - b).abs() {
         0.0 => 0.0,
         gap => gap / size(at).max(b.abs()),
     });

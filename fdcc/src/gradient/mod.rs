@@ -118,8 +118,8 @@ impl Gradient {
 /// Where there are no second derivatives.
 fn why_none() -> String {
     "there are no second derivatives here: none are known where infinitely many jumps come to \
-     rest, where a `Dir` moves, by a start that leaves a surface on which it slides, and where a kink is \
-     met together with something else"
+     rest, where a `Dir` moves, by a start that leaves a surface on which it slides, and where a \
+     kink is met together with something else"
         .into()
 }
 

@@ -71,7 +71,12 @@ pub(crate) fn plots<'c>(
     column: impl Fn(&str) -> Option<&'c [f64]>,
 ) -> Vec<Plot> {
     let plot = |it: &fdcc_compiler::Plot| {
-        let seen = || Some([range(column(&it.over)?)?, range(column(it.curves.first()?)?)?]);
+        let seen = || {
+            let first = it.curves.first()?;
+            let vector = |name: &str| name.rsplit_once('.').map(|it| it.0.to_owned());
+            let is_to_scale = vector(&it.over).is_some() && vector(&it.over) == vector(first);
+            Some(around([range(column(&it.over)?)?, range(column(first)?)?], is_to_scale))
+        };
         let border = |border: &Border| {
             let plane = Plane::new(model, border, unknowns)?;
             Some((border.place.name.clone(), line(&plane, seen()?)))
@@ -94,15 +99,24 @@ fn range(column: &[f64]) -> Option<[f64; 2]> {
     (low.is_finite() && high.is_finite()).then_some([low, high])
 }
 
-/// The border in a square around what is seen, so that it is whole also where both axes have the
-/// same scale. Each cell is cut into two triangles, across which the room is taken for linear.
-fn line(plane: &Plane, seen: [[f64; 2]; 2]) -> Vec<Segment> {
-    let largest = seen.iter().fold(0.0, |size: f64, [low, high]| size.max(high - low));
-    // The curves cover half of it.
-    let half = if largest > 0.0 { largest } else { 1.0 };
-    let coordinate = |axis: usize, k: usize| {
+/// A plane with as much beyond what is seen as there is of it: a square where both axes have the
+/// same scale.
+fn around(seen: [[f64; 2]; 2], is_to_scale: bool) -> [[f64; 2]; 2] {
+    let [x, y] = seen.map(|[low, high]| high - low);
+    let halves = if is_to_scale { [x.max(y); 2] } else { [x, y] };
+    [0, 1].map(|axis| {
         let middle = 0.5 * (seen[axis][0] + seen[axis][1]);
-        middle + half * (2.0 * k as f64 / CELLS as f64 - 1.0)
+        let half = if halves[axis] > 0.0 { halves[axis] } else { 1.0 };
+        [middle - half, middle + half]
+    })
+}
+
+/// The border in a plane. Each cell is cut into two triangles, across which the room is taken for
+/// linear.
+fn line(plane: &Plane, ends: [[f64; 2]; 2]) -> Vec<Segment> {
+    let coordinate = |axis: usize, k: usize| {
+        let [low, high] = ends[axis];
+        low + (high - low) * k as f64 / CELLS as f64
     };
     let point = |i: usize, j: usize| [coordinate(0, i), coordinate(1, j)];
     let rows = (0..=CELLS).map(|j| (0..=CELLS).map(move |i| [i, j]));
@@ -121,7 +135,8 @@ fn across(corners: [([f64; 2], f64); 3]) -> Option<Segment> {
     let edge = |(a, b): (usize, usize)| {
         let ((from, before), (to, behind)) = (corners[a], corners[b]);
         let part = before / (before - behind);
-        let is_crossed = (before >= 0.0) != (behind >= 0.0);
+        // What has no value has no side.
+        let is_crossed = (before >= 0.0) != (behind >= 0.0) && part.is_finite();
         is_crossed.then(|| [0, 1].map(|axis: usize| from[axis] + part * (to[axis] - from[axis])))
     };
     let mut crossed = [(0, 1), (1, 2), (2, 0)].into_iter().filter_map(edge);

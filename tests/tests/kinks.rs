@@ -229,7 +229,8 @@ fn a_start_that_slides_has_second_derivatives_along_the_surface_only() {
 }
 
 /// `x(end) = |a| + 1`, the last time is `max(a, 1)`, and `y(end) = -2 |a|`: with a kink of the
-/// parameter alone, wherever the state is; beside it there is none.
+/// parameter alone, wherever the state is; beside it there is none. So have `exp(max(a, 0))` and
+/// `e |a|`, as soon as the right side is not multiplied by 0.
 #[test]
 fn kinks_of_parameters_alone_are_seen() {
     let texts = [
@@ -240,6 +241,22 @@ fn kinks_of_parameters_alone_are_seen() {
             0.0,
             "time t in [0, 1] state x start -0.5 state y start 0 surface s = x - abs(a)
              dynamics { x' = 1 y' in Sgn(s) } minimize y(end)",
+        ),
+        (
+            "a",
+            0.0,
+            "time t in [0, 1] state x start 1 dynamics { x' = max(a, 0)*x } minimize x(end)",
+        ),
+        (
+            "a",
+            1.0,
+            "time t in [0, 2] state x start 0 dynamics { x' = max(t - 1, 0)*min(a, 1) }
+             minimize x(end)",
+        ),
+        (
+            "a",
+            0.0,
+            "time t in [0, 1] state x start 1 dynamics { x' = x } minimize integral(x*abs(a))",
         ),
     ];
     for (name, place, text) in texts {
@@ -253,6 +270,18 @@ fn kinks_of_parameters_alone_are_seen() {
             assert_eq!(is_found, is_on, "{text} at {value}");
         }
     }
+}
+
+/// `a |a|` and `max(a, 0)^2` have one derivative at 0, and what is multiplied by 0 has all.
+#[test]
+fn kinks_of_parameters_that_bend_nothing_are_none() {
+    let text = "param a = 0 time t in [0, 1] state x start 1 state y start 0
+        dynamics { x' = a*abs(a)*x + max(a, 0)^2 y' = max(a, 0)*y } minimize x(end) + y(end)";
+    let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
+    let by = [parameter(&system, "a")];
+    let found = gradient(&system, &Controls::Guess, &Options::default(), &by);
+    let kink = found.expect("the last time is reached").kink;
+    assert!(kink.is_none(), "{kink:?}");
 }
 
 /// Surfaces, starts and resets that are sums which cancel and have no kink: where a regime begins

@@ -10,7 +10,7 @@
 //! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces,
 //! which says on which side of 0 it is. So the right side is smooth on each side and goes on
 //! smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a
-//! surface. Where `e` is the function of a surface, the selector of that surface says it already,
+//! surface. Those that only parameters move stay in the right side: nothing crosses them. Where `e` is the function of a surface, the selector of that surface says it already,
 //! unless the right side has no value beyond: `sqrt(-x)` above 0 is none, and a step that crosses
 //! `x = 0` has a stage there.
 
@@ -21,13 +21,31 @@ use crate::expressions::graph::{Expr, ExprId, Graph};
 use fdcc_runtime::problem::Origin;
 use std::collections::HashSet;
 
-/// The kinks of a function, each after those inside it.
+/// The kinks of a function.
 #[derive(Default)]
 pub(super) struct Kinks {
-    /// What is 0 there.
-    pub zeros: Vec<ExprId>,
-    /// Where each comes from.
+    /// Those that have selectors, each after those inside it.
+    pub crossed: Zeros,
+    /// Those that parameters alone move.
+    pub of_parameters: Zeros,
+}
+
+/// What is 0 at kinks, and where each comes from.
+#[derive(Default)]
+pub(super) struct Zeros {
+    pub values: Vec<ExprId>,
     pub origins: Vec<Origin>,
+}
+
+impl Zeros {
+    /// The place of one, which is a new one if it is not among them.
+    fn place_of(&mut self, zero: ExprId, origin: &Origin) -> usize {
+        self.values.iter().position(|known| *known == zero).unwrap_or_else(|| {
+            self.values.push(zero);
+            self.origins.push(origin.clone());
+            self.values.len() - 1
+        })
+    }
 }
 
 /// Takes the kinks out of a function whose layout has the selectors of the surfaces last.
@@ -91,7 +109,7 @@ fn defined_with(graph: &mut Graph, zero: ExprId, side: ExprId) -> ExprId {
     graph.select_le(zero, all, side, none)
 }
 
-/// The selector of a kink; none if nothing moves it.
+/// The selector of a kink; none if nothing but parameters moves it.
 fn side_of(
     graph: &mut Graph,
     zero: ExprId,
@@ -103,16 +121,12 @@ fn side_of(
     let first = layout.selectors().start;
     let is_moved = |input: &u32| !layout.parameters().contains(&(*input as usize));
     if !graph.inputs_of(&[zero]).iter().any(is_moved) {
+        kinks.of_parameters.place_of(zero, origin);
         return None;
     }
     if let Some(surface) = surfaces.iter().position(|psi| *psi == Some(zero)) {
         return Some(graph.input((first + surface) as u32));
     }
-    let known = kinks.zeros.iter().position(|known| *known == zero);
-    let place = known.unwrap_or_else(|| {
-        kinks.zeros.push(zero);
-        kinks.origins.push(origin.clone());
-        kinks.zeros.len() - 1
-    });
+    let place = kinks.crossed.place_of(zero, origin);
     Some(graph.input((first + switching.len() + place) as u32))
 }

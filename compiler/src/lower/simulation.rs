@@ -10,6 +10,7 @@
 //! interval  t0(p), tf(p)
 //! start     x(start)(p)
 //! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow
+//! fixed     e(p) of those that parameters alone move
 //! ```
 //!
 //! Every integral of the model is one more state, so the objective is a function of both ends. A
@@ -20,7 +21,7 @@ use super::enclosures::{Watched, enclosures};
 use super::function::{Order, VectorFunction};
 use super::guess;
 use super::inputs::{self, Inputs, Sizes};
-use super::kinks::take_out;
+use super::kinks::{Kinks, take_out};
 use super::objective::Hidden;
 use super::problem::{controls, parameters, states, surfaces};
 use super::{interval, origin, smoothed};
@@ -64,7 +65,7 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let layout = Layout { s: surfaces, ..sizes.flow() };
     let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
     let mut flow = over.flow();
-    let kinks = over.kinks(&mut flow);
+    let [kinks, fixed_kinks] = over.kinks(&mut flow);
     let (switching, path) = (over.switching(), over.path());
     let rates = over.rates(&flow, &switching);
     let mut functions = vec![
@@ -77,13 +78,14 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
         interval(model, over.graph, &sizes),
         over.start(),
         kinks,
+        fixed_kinks,
     ];
     let layout = over.layout;
     if purpose != Purpose::Simulation {
         functions.iter_mut().for_each(|function| differentiable(model, &mut graph, function));
     }
-    let [flow, rates, switching, _, _, guess, _, _, kinks] = functions.as_slice() else {
-        unreachable!("a system has nine functions")
+    let [flow, rates, switching, _, _, guess, _, _, kinks, _] = functions.as_slice() else {
+        unreachable!("a system has ten functions")
     };
     let enclosures = enclosures(
         &mut graph,
@@ -179,8 +181,9 @@ impl OverTime<'_> {
         self.function("path", model.path.iter().map(|row| (row.value, origin(&row.place))), 0..0)
     }
 
-    /// Gives the kinks of the flow selectors; where a solve smooths, the knots of the kernel.
-    fn kinks(&mut self, flow: &mut VectorFunction) -> VectorFunction {
+    /// Gives the kinks of the flow selectors, but for those of parameters alone, which follow;
+    /// where a solve smooths, the knots of the kernel.
+    fn kinks(&mut self, flow: &mut VectorFunction) -> [VectorFunction; 2] {
         let switching = self.switching().outputs;
         let is_alone = |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
         let switching: Vec<Option<ExprId>> = switching
@@ -188,10 +191,14 @@ impl OverTime<'_> {
             .enumerate()
             .map(|(at, psi)| is_alone(at).then_some(psi))
             .collect();
-        let kinks = take_out(self.graph, flow, &switching);
-        self.layout.s += kinks.zeros.len();
+        let Kinks { crossed, of_parameters } = take_out(self.graph, flow, &switching);
+        self.layout.s += crossed.values.len();
         flow.layout = self.layout;
-        self.over_inputs("kinks", kinks.zeros, kinks.origins, 0..self.layout.controls().end)
+        let by = 0..self.layout.controls().end;
+        [
+            self.over_inputs("kinks", crossed.values, crossed.origins, by),
+            self.over_inputs("fixed_kinks", of_parameters.values, of_parameters.origins, 0..0),
+        ]
     }
 
     /// `psi'` along the flow.
@@ -264,9 +271,9 @@ pub(crate) fn system(
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> simulate::System {
-    let [flow, rates, switching, resets, objective, guess, interval, start, kinks]: [Arc<
+    let [flow, rates, switching, resets, objective, guess, interval, start, kinks, fixed_kinks]: [Arc<
         dyn Function,
-    >; 9] = functions.try_into().unwrap_or_else(|_| unreachable!("a system has nine functions"));
+    >; 10] = functions.try_into().unwrap_or_else(|_| unreachable!("a system has ten functions"));
     let first_sigma = model.params.len() + model.frees.len();
     let parameters = parameters(model, simulated.layout.p, numbers);
     let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();
@@ -288,6 +295,7 @@ pub(crate) fn system(
         objective,
         guess,
         kinks,
+        fixed_kinks,
         enclosures: simulated.enclosures.clone(),
         interval_of: interval,
         start_of: start,

@@ -123,6 +123,8 @@ pub struct System {
     /// that of `abs`; the selectors behind those of the surfaces say on which side of each the
     /// state is. Kinks inside others come first; differentiated by `t`, `x` and `u`.
     pub kinks: Arc<dyn Function>,
+    /// Over the inputs of `flow`, what is 0 where `flow` has a kink that parameters alone move.
+    pub fixed_kinks: Arc<dyn Function>,
     /// Bounds of the functions that are watched along a step.
     pub enclosures: Enclosures,
     /// First and last time over `[p]`.

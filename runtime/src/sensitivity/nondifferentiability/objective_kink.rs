@@ -58,10 +58,15 @@ fn is_kinked(
     has_kink(direction.value, terms, |moved| value(lineariser, ends, &(moved * &direction.by)))
 }
 
+/// How far a quantity of this value is moved.
+pub(super) fn distance_from(quantity: f64) -> f64 {
+    DISTANCE * if quantity == 0.0 { 1.0 } else { quantity.abs() }
+}
+
 /// Whether a function of how far a quantity is moved from its value has a kink there; `terms` is
 /// the size of what it is a sum of.
 pub(super) fn has_kink(quantity: f64, terms: f64, value: impl Fn(f64) -> f64) -> bool {
-    let distance = DISTANCE * if quantity == 0.0 { 1.0 } else { quantity.abs() };
+    let distance = distance_from(quantity);
     let own = value(0.0);
     let bend = |part: f64| {
         let [above, below] = [value(part * distance), value(-part * distance)];

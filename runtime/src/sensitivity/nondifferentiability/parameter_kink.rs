@@ -2,14 +2,14 @@
 //! `surface s = x - abs(a)`. They are found as those of an objective are.
 
 use super::kink::{Kink, KinkMet};
-use super::objective_kink::has_kink;
+use super::objective_kink::{distance_from, has_kink};
 use crate::problem::{Columns, Function};
 use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser};
 use crate::simulate::{Piece, Tape};
 use std::ops::Range;
 
-/// The first kink that one of these parameters is on: of the times, of the starts, or of a surface
-/// where a step begins.
+/// The first kink that one of these parameters is on: of the times, of the starts, of a surface
+/// where a regime begins, or of the right side where a step begins.
 pub(crate) fn parameter_kink(
     lineariser: &Lineariser,
     tape: &Tape,
@@ -19,7 +19,8 @@ pub(crate) fn parameter_kink(
     let nothing = Columns::new(0, 1);
     let fixed = [(&system.interval_of, nothing.clone()), (&system.start_of, nothing)];
     let watched = begins(lineariser, tape).into_iter().map(|point| (&system.switching, point));
-    fixed.into_iter().chain(watched).find_map(|(function, point)| {
+    let flows = steps_on_kinks(lineariser, tape, parameters).map(|point| (&system.flow, point));
+    fixed.into_iter().chain(watched).chain(flows).find_map(|(function, point)| {
         let of = |parameter: &usize| output_with_kink(&**function, &point, lineariser, *parameter);
         let output = parameters.iter().find_map(of)?;
         Some(Kink { of: function.origin(output), met: KinkMet::ByParameters })
@@ -38,6 +39,34 @@ fn begins(lineariser: &Lineariser, tape: &Tape) -> Vec<Columns> {
         }
     }
     points
+}
+
+/// Where the steps begin, if one of these parameters is on a kink of the right side. Whether that
+/// bends anything depends on the state: `max(a, 0) x` has no kink where `x` is 0.
+fn steps_on_kinks<'a>(
+    lineariser: &'a Lineariser,
+    tape: &'a Tape,
+    parameters: &[usize],
+) -> impl Iterator<Item = Columns> + 'a {
+    let fixed_kinks = &*lineariser.system.fixed_kinks;
+    let inputs = fixed_kinks.layout().inputs() - lineariser.parameters.len();
+    let zeros = |values: &[f64]| values_of(fixed_kinks, &Columns::new(inputs, 1), values);
+    let is_on = parameters.iter().any(|at| {
+        let moved = |by: f64| {
+            let mut parameters = lineariser.parameters.clone();
+            parameters[*at] += by;
+            zeros(&parameters)
+        };
+        let distance = distance_from(lineariser.parameters[*at]);
+        let [below, above] = [moved(-distance), moved(distance)];
+        below.iter().zip(&above).any(|(below, above)| below * above <= 0.0 && below != above)
+    });
+    let points = tape.pieces.iter().filter_map(|piece| {
+        let Piece::Step { start, .. } = piece else { return None };
+        let (regime, state) = (&tape.regimes[start.regime], start.state.clone().into());
+        Some(lineariser.table(regime, &start.selectors, start.time, &state))
+    });
+    points.take(if is_on { usize::MAX } else { 0 })
 }
 
 /// The first output of a function at a point that has a kink along a parameter.

@@ -38,7 +38,7 @@ pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};
 pub use data::{Files, Table};
 pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
-pub use kinks::{Kinks, is_kink, side_of, without_kinks};
+pub use kinks::{Kinks, is_kink, parameters_on_kinks, side_of, without_kinks};
 pub use lower::{Expected, LoweredProblem};
 pub use model::{Along, Border, Model, Phase, Plane, Plot, Switch};
 pub use phases::{

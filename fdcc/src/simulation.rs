@@ -41,7 +41,8 @@ impl Simulation {
         matches!(self.result.status, Status::Completed)
     }
 
-    /// When the states are reported.
+    /// When the states are reported: at the times that were asked for, else at all steps and, where
+    /// the accuracy says so, at points between them.
     pub fn time(&self) -> &[f64] {
         &self.result.time
     }

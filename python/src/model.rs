@@ -241,6 +241,7 @@ impl Model {
         let driven = Driven::new(&self.model, controls, &values(given))?;
         let driven = driven.map_err(|error| self.raised(py, error))?;
         let (model, accuracy) = (driven.model.clone(), accuracy(times, rtol, &watch)?);
+        let accuracy = Accuracy { points_between: true, ..accuracy };
         let simulated = watch.aside(py, || {
             let system = model.system()?;
             fits(&accuracy, system.interval)?;

@@ -59,7 +59,7 @@ impl Simulate {
         let mut record = saved.as_ref().map(Saved::record);
         // The model has them, or others.
         record.iter_mut().flat_map(|it| &mut it.phases).for_each(|it| it.params.clear());
-        let simulated = model.simulate_phases(record.as_ref(), &self.driven.options(&model))?;
+        let simulated = model.simulate_phases(record.as_ref(), &self.options(&model))?;
         let exit = if simulated.is_complete() { Exit::Fine } else { Exit::NotSolved };
         Ok((Text::of_phases(&PhasesDocument::new(&simulated, &model)), exit))
     }
@@ -71,7 +71,7 @@ impl Simulate {
         let [first, last] = system.interval;
         let unit = model.meaning().time_size();
         let times = self.times.iter().map(|time| time * unit).collect();
-        let options = Accuracy { times, ..self.driven.options(&model) };
+        let options = Accuracy { times, ..self.options(&model) };
         let mut times = self.times.iter().zip(&options.times);
         if let Some((outside, _)) = times.find(|(_, time)| **time < first || **time > last) {
             let [first, last] = [first, last].map(|time| time / unit);
@@ -82,6 +82,10 @@ impl Simulate {
         let simulation = Simulation::new(&model, system, &controls, &options);
         let exit = if simulation.is_complete() { Exit::Fine } else { Exit::NotSolved };
         Ok((SimulationDocument::new(&simulation, &model), exit))
+    }
+
+    fn options(&self, model: &Model) -> Accuracy {
+        Accuracy { points_between: true, ..self.driven.options(model) }
     }
 
     fn report(&self, text: &Text, exit: Exit, model: &Model) -> Exit {

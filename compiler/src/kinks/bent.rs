@@ -115,7 +115,7 @@ fn movers(model: &Model, graph: &Graph, e: ExprId) -> Option<Movers> {
 }
 
 /// Whether what reads a kink has a kink there: not `v*abs(v)`, nor `max(x, 0)^2`.
-fn is_bent(graph: &mut Graph, root: ExprId, kink: &Tried) -> bool {
+pub(super) fn is_bent(graph: &mut Graph, root: ExprId, kink: &Tried) -> bool {
     let slope = derivative(graph, root, kink.input);
     let zero = graph.number(0.0);
     let below = graph.substitute(&[slope], &|at| (at == kink.input).then_some(zero))[0];

@@ -22,6 +22,7 @@
 
 mod bent;
 mod in_phases;
+mod of_parameters;
 mod sides;
 
 use crate::expressions::blend::sides;
@@ -31,6 +32,7 @@ use crate::model::numbers::numbers;
 use crate::model::phases::Symbols;
 use crate::model::{Constraint, Control, Free, Integral, Model, Place, Range, Surface, Symbol};
 use bent::Bent;
+pub use of_parameters::parameters_on_kinks;
 
 /// What is made of kinks.
 #[derive(Clone, Copy, Debug, PartialEq)]

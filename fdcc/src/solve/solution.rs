@@ -12,7 +12,9 @@ use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
 use crate::verification::{Verification, verify};
 use crate::warm_start::from_record;
-use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters, is_kink};
+use fdcc_compiler::{
+    compile_by_parameters, compile_chain_by_parameters, is_kink, parameters_on_kinks,
+};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::nlp::{self, Status};
 use fdcc_runtime::problem::{Chain, Problem, Variable};
@@ -364,6 +366,9 @@ impl Solution {
         let names = params.iter().map(|param| param.place.name.as_str());
         let mut found = found.unwrap_or_default();
         found.iter_mut().zip(&self.of_holds).for_each(|(sum, more)| *sum += more);
+        for at in parameters_on_kinks(self.model.meaning()) {
+            found.iter_mut().skip(at).take(1).for_each(|it| *it = f64::NAN);
+        }
         names.zip(found).collect()
     }
 }

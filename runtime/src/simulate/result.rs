@@ -26,6 +26,10 @@ pub struct Options {
     pub max_steps: usize,
     /// Times at which states are wanted, ascending; all steps and events if there are none.
     pub times: Vec<f64>,
+    /// Whether to report points between steps, too, where no times are wanted: so many that
+    /// straight lines between all of them are off by no more than a part of 500 of how far a state
+    /// has moved.
+    pub points_between: bool,
     /// Whether to note what derivatives need.
     pub tape: bool,
     /// Whether to find the extremes of path conditions.
@@ -114,6 +118,7 @@ impl Default for Options {
             paces: Vec::new(),
             max_steps: 1_000_000,
             times: Vec::new(),
+            points_between: false,
             tape: false,
             extremes: false,
             watch: Watch::default(),

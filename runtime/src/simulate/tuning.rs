@@ -262,6 +262,14 @@ pub(crate) mod staying {
     pub(crate) const AHEAD: f64 = 1e-5;
 }
 
+pub(crate) mod between {
+    /// A straight line may be off by this part of how far a state has moved: less than the width of
+    /// the line in a picture.
+    pub(crate) const STRAIGHT: f64 = 0.002;
+    /// Halves of halves of one step.
+    pub(crate) const MOST_HALVINGS: usize = 8;
+}
+
 pub(crate) mod zeno {
     /// What is left may be at most this part of the whole time before the limit is believed.
     pub(crate) const NEAR: f64 = 1e-6;

@@ -178,6 +178,7 @@ impl Run<'_> {
         self.record.inside(time, &mut |wanted| step.exactly_at(field, (wanted - step.t).max(0.0)));
         if h > 0.0 {
             self.extremes.follow(&self.field, step, h / step.h);
+            self.note_between(step, h / step.h);
         }
         self.t = time;
         self.x.copy_from_slice(end);

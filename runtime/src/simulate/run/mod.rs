@@ -2,6 +2,7 @@
 
 mod advance;
 mod arrival;
+mod between;
 mod events;
 mod record;
 mod recorder;

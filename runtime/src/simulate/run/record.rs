@@ -7,6 +7,8 @@ pub(crate) struct Record {
     pub time: Vec<f64>,
     pub states: Vec<Vec<f64>>,
     pub events: Vec<Event>,
+    /// The least and the greatest that each state has been.
+    extremes: Vec<[f64; 2]>,
     wanted: Vec<f64>,
     /// How many of the wanted times are past.
     past: usize,
@@ -18,6 +20,7 @@ impl Record {
             time: Vec::new(),
             states: vec![Vec::new(); states],
             events: Vec::new(),
+            extremes: vec![[f64::INFINITY, f64::NEG_INFINITY]; states],
             wanted: options.times.clone(),
             past: 0,
         }
@@ -40,6 +43,20 @@ impl Record {
         if self.wanted.is_empty() && !is_same {
             self.push(t, x);
         }
+    }
+
+    /// Notes that these states have been.
+    pub fn widen(&mut self, states: &[Vec<f64>]) {
+        for state in states {
+            for ([low, high], value) in self.extremes.iter_mut().zip(state) {
+                (*low, *high) = (low.min(*value), high.max(*value));
+            }
+        }
+    }
+
+    /// How far each state has moved.
+    pub fn extents(&self) -> impl Iterator<Item = f64> + '_ {
+        self.extremes.iter().map(|[low, high]| high - low)
     }
 
     /// The wanted times before a time, with the states that are given for them.

@@ -3,7 +3,7 @@
 use crate::solution::Solution;
 use fdcc::{Controls, DataFiles, Error, Replay, Value};
 use fdcc_cli::Saved;
-use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::exceptions::{PyFileNotFoundError, PyOSError, PyValueError};
 use pyo3::prelude::*;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -65,7 +65,13 @@ impl Earlier {
         match self {
             Earlier::Solution(solution) => Ok(Known::Solution(solution)),
             Earlier::File(path) => {
-                Saved::read(&path).map(|it| Known::File(Box::new(it))).map_err(PyOSError::new_err)
+                let missing = !path.exists();
+                Saved::read(&path).map(|it| Known::File(Box::new(it))).map_err(
+                    |why| match missing {
+                        true => PyFileNotFoundError::new_err(why),
+                        false => PyOSError::new_err(why),
+                    },
+                )
             }
         }
     }

@@ -197,6 +197,11 @@ impl Model {
             variant.is_compiled.store(true, Ordering::Relaxed);
         }
         let compiling = watch.seconds();
+        if let Some(Known::Solution(it)) = &warm {
+            let record = it.get().solution().record();
+            let known = model.compile().and_then(|it| it.check_start(Start::Record(&record)));
+            known.map_err(|error| self.raised(py, error))?;
+        }
         let told = |it: &Report| {
             if let (Report::Iteration(_, progress, level), Some(report)) = (it, &report) {
                 let (objective, violation) = (progress.objective, progress.primal_infeasibility);

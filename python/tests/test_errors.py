@@ -2,6 +2,7 @@
 
 import pickle
 
+import numpy as np
 import pytest
 
 import fdcc
@@ -68,3 +69,24 @@ def test_deep_models_do_not_end_the_process():
     worker.start()
     worker.join()
     assert len(found) == 1
+
+
+def test_a_solution_of_another_model_is_no_start(models, hop):
+    other = fdcc.Model(models / "block.fdc").solve(N=20)
+    with pytest.raises(ValueError, match="has no state or control of the model"):
+        fdcc.compile("time t in [0, 1]  state q start 0  dynamics { q' = 1 }").solve(warm=other)
+    with pytest.raises(FileNotFoundError):
+        hop.solve(warm="missing.sol.json")
+
+
+def test_wrong_arguments_are_told_by_name(hop, tmp_path):
+    with pytest.raises(TypeError, match="`values` cannot be 3"):
+        hop.solve(values=3)
+    with pytest.raises(ValueError, match="would be a JSON document"):
+        hop.solve(N=10).save(tmp_path / "x.csv")
+    with pytest.raises(AttributeError, match="did you mean 'controls'"):
+        hop.solve(N=10).controlls
+
+
+def test_the_only_control_needs_no_name(hop):
+    assert hop.simulate(u=np.full(4, 0.5)).end["x"] == hop.simulate(u={"v": [0.5] * 4}).end["x"]

@@ -61,3 +61,37 @@ def test_phases_are_drawn_one_after_the_other(models):
     assert len(solution.plot(["boost.h"])[0].lines) == 1
     with pytest.raises(KeyError, match="boost.h"):
         solution.plot(["q"])
+
+
+def test_a_jump_has_two_rows(models):
+    pytest.importorskip("pandas")
+    solution = fdcc.Model(models / "bounce.fdc").solve()
+    jump = solution.document.jumps[0]
+    rows = solution.to_pandas().loc[jump.time]
+    assert rows["v"].tolist() == [jump.before["v"], jump.after["v"]] and len(rows) == 2
+    assert len(solution.to_pandas()) == len(solution.t) + len(solution.document.jumps)
+
+
+def test_both_sides_of_a_jump_are_drawn(models):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    solution = fdcc.Model(models / "bounce.fdc").solve()
+    jump = solution.document.jumps[0]
+    line = solution.plot("v")[0].lines[0]
+    at = line.get_ydata()[line.get_xdata() == jump.time]
+    assert at.tolist() == [jump.before["v"], jump.after["v"]]
+
+
+def test_linear_controls_are_drawn_through_their_values(models):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    solution = fdcc.Model(models / "block.fdc").solve(controls="linear", sigma=0.1, N=20)
+    line = solution.plot("F")[0].lines[0]
+    assert np.array_equal(line.get_ydata(), solution.document.control_nodes["values"]["F"])
+
+
+def test_a_simulation_is_drawn_as_it_moves(models):
+    found = fdcc.Model(models / "bounce.fdc").simulate()
+    exact = fdcc.Model(models / "bounce.fdc").simulate(t=np.linspace(0, found.t[-1], 200))
+    drawn = np.interp(exact.t, found.t, found["h"])
+    assert np.abs(drawn - exact["h"]).max() < 0.003 * np.ptp(exact["h"])

@@ -1,9 +1,8 @@
 //! What shows that an answer is an optimum of the true system, as data and in words.
 
-use super::modes::{Span, switching};
+use super::modes::{Span, switching, touches};
 use super::named::Named;
 use super::number::scientific;
-use super::plural;
 use super::units::Units;
 use fdcc::names::mode_name;
 use fdcc::true_optimum;
@@ -88,7 +87,7 @@ impl Certificate {
     pub fn headline(&self, found: &str, has_objective: bool, jumps: usize) -> String {
         let located = match self.is_smooth {
             true => String::new(),
-            false => format!(" {},", located(self.switches.len(), jumps)),
+            false => format!(" {},", self.located(jumps)),
         };
         let replayed = self.figure("replayed").max(self.figure("conditions"));
         let replayed = scientific(replayed, 1);
@@ -98,6 +97,12 @@ impl Certificate {
         }
         let stationary = scientific(self.figure("stationary"), 1);
         format!("{of}, stationary to {stationary}, second order ok")
+    }
+
+    fn located(&self, jumps: usize) -> String {
+        let all: Vec<_> =
+            self.switches.iter().map(|it| (&it.surface[..], it.time, it.to)).collect();
+        located(&all, jumps)
     }
 
     fn system(&self) -> &'static str {
@@ -137,18 +142,26 @@ impl Certificate {
     }
 }
 
-/// How many switches and jumps were located: `2 switches and 1 jump located`.
-pub fn located(switches: usize, jumps: usize) -> String {
+/// How many switches and jumps were located: `2 switches and 1 jump located`. Of each switch its
+/// surface, the time and the new mode; a surface that is held for no time is touched.
+pub fn located(switches: &[(&str, f64, &str)], jumps: usize) -> String {
+    let touches = touches(switches);
+    let switches = switches.len() - 2 * touches;
+    let count = |number: usize, one: &str, many: &str| match number {
+        0 => None,
+        1 => Some(format!("1 {one}")),
+        _ => Some(format!("{number} {many}")),
+    };
     let all = [
-        (switches > 0).then(|| {
-            if switches == 1 { "1 switch".into() } else { format!("{switches} switches") }
-        }),
-        (jumps > 0).then(|| plural(jumps, "jump")),
+        count(switches, "switch", "switches"),
+        count(touches, "touch", "touches"),
+        count(jumps, "jump", "jumps"),
     ];
     let all: Vec<String> = all.into_iter().flatten().collect();
-    match all.is_empty() {
-        true => "no switch to locate".into(),
-        false => format!("{} located", all.join(" and ")),
+    match all.split_last() {
+        None => "no switch to locate".into(),
+        Some((last, [])) => format!("{last} located"),
+        Some((last, others)) => format!("{} and {last} located", others.join(", ")),
     }
 }
 

@@ -87,8 +87,12 @@ pub fn title(document: &Json) -> String {
 
 /// How many switches and jumps were located.
 fn all_located(document: &Json) -> String {
-    let switches = document.at("certificate").at("switches").list().len();
-    located(switches, document.at("jumps").list().len())
+    let switches = document.at("certificate").at("switches").list().iter();
+    let switch = |it| {
+        let time = Json::at(it, "time").number().unwrap_or(f64::NAN);
+        (it.at("surface").text(), time, it.at("to").text())
+    };
+    located(&switches.map(switch).collect::<Vec<_>>(), document.at("jumps").list().len())
 }
 
 /// Whether nothing switches and nothing jumps.

@@ -124,6 +124,9 @@ class Result:
     def __getattr__(self, name: str) -> Any:
         if name.startswith("_") or name == "document":
             raise AttributeError(name)
+        if name not in self.document:
+            own = [it for it in dir(type(self)) if not it.startswith("_")]
+            raise AttributeError(no_such(name, sorted({*own, *self.document})))
         return getattr(self.document, name)
 
     def __setattr__(self, name: str, value: Any) -> None:

@@ -96,11 +96,11 @@ class Simulation(Result):
 
     def plot(self, names: Sequence[str] | str | None = None) -> Any:
         """Draws the states over time with matplotlib; returns its axes, one for each name."""
-        from ._plot import axes
+        from ._plot import axes, over_time
 
         wanted = [names] if isinstance(names, str) else names
         signals = self.states if wanted is None else {it: self[it] for it in wanted}
-        return axes([(self.time, signals, ())])
+        return axes([over_time(self.time, signals)])
 
     def __repr__(self) -> str:
         events = len(self.events)

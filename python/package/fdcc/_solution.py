@@ -267,15 +267,29 @@ class Solution(Result):
 
     def save(self, path: str | PathLike[str]) -> None:
         """Writes what ``fdcc solve`` writes as ``.sol.json``: :meth:`load` and ``fdcc verify`` read
-        it, and ``warm`` and ``u`` take its path."""
+        it, and ``warm`` and ``u`` take its path. A table is that of :meth:`to_pandas`."""
+        if Path(path).suffix.lower() in (".csv", ".html", ".xlsx", ".parquet"):
+            other = "`to_pandas()` has tables, and `fdcc report` makes a page of what was saved"
+            raise ValueError(f"{fspath(path)} would be a JSON document; {other}")
         Path(path).write_text(self._solution.json(), encoding="utf-8")
 
     def to_pandas(self) -> Any:
-        """A ``pandas.DataFrame``: a column for each state, control and report, indexed by ``time``;
-        of a model with phases a frame for each, by name."""
+        """A ``pandas.DataFrame``: a column for each state, control and report, indexed by ``time``,
+        with two rows for a jump; of a model with phases a frame for each, by name."""
         if self.phases:
             return Named({name: it.to_pandas() for name, it in self.phases.items()})
-        return _tables.frame(self.time, {**self.states, **self.controls, **self.report})
+        signals = {**self.states, **self.controls, **self.report}
+        return _tables.frame(self.time, signals, self._jumps)
+
+    @property
+    def _jumps(self) -> Sequence[Any]:
+        return () if self._phase else self.document.get("jumps", ())
+
+    @property
+    def _control_nodes(self) -> Record | None:
+        """The ``time`` and the ``values`` that define controls that are not constant on intervals."""
+        own = self.document.phases[self._phase] if self._phase else self.document
+        return own.get("control_nodes")
 
     def to_xarray(self) -> Any:
         """An ``xarray.Dataset``: states, costates (``costate(x)``) and reports over ``time``,

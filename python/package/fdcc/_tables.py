@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,16 +10,34 @@ import numpy as np
 from ._arrays import Signal
 
 
-def frame(time: Signal, signals: Mapping[str, Signal]) -> Any:
+def frame(time: Signal, signals: Mapping[str, Signal], jumps: Sequence[Any] = ()) -> Any:
     """A data frame, indexed by time; a signal with a value for each interval has that of the last
-    one twice. Units are in ``attrs["units"]``."""
+    one twice, and a jump has two rows. Units are in ``attrs["units"]``."""
     import pandas
 
-    index = pandas.Index(np.asarray(time), name="time")
-    columns = {name: held(time, it) for name, it in signals.items()}
-    table = pandas.DataFrame(columns, index=index)
+    times, columns = both_sides(time, signals, jumps)
+    table = pandas.DataFrame(columns, index=pandas.Index(times, name="time"))
     table.attrs["units"] = {"time": time.unit} | {it: own.unit for it, own in signals.items()}
     return table
+
+
+def both_sides(
+    time: Signal, signals: Mapping[str, Signal], jumps: Sequence[Any]
+) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Times, and a value of each signal at each of them. A jump has two rows, before it and after
+    it: in the first one a control has the value of the interval that ends, a report none."""
+    rows = {int(np.argmin(np.abs(np.asarray(time) - it.time))): it.before for it in jumps}
+    order = [row for row in range(len(time)) for _ in range(1 + (row in rows))]
+    first = [at for at, row in enumerate(order) if row in rows and order[at + 1 :][:1] == [row]]
+
+    def column(name: str, signal: Signal) -> np.ndarray:
+        values = held(time, signal)[order]
+        for at in first:
+            is_held = len(signal) < len(time)
+            values[at] = rows[order[at]].get(name, values[at - 1] if is_held else np.nan)
+        return values
+
+    return np.asarray(time)[order], {name: column(name, it) for name, it in signals.items()}
 
 
 def held(time: Signal, signal: Signal) -> np.ndarray:

@@ -25,6 +25,8 @@ def given(
     values: Mapping[str, Value] | None, named: Mapping[str, Value], params: Sequence[str]
 ) -> list[tuple[str, float | str]]:
     """All of them, as the library takes them; ``None`` stands for what the model says."""
+    if not isinstance(values, (Mapping, type(None))):
+        raise TypeError(f"`values` cannot be {short(values)}; it needs values by name")
     for name in named:
         if name in (values or {}):
             raise ValueError(f"`{name}` is given twice: in `values` and by name; leave one out")

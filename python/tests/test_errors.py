@@ -2,7 +2,6 @@
 
 import pickle
 
-import numpy as np
 import pytest
 
 import fdcc
@@ -86,7 +85,3 @@ def test_wrong_arguments_are_told_by_name(hop, tmp_path):
         hop.solve(N=10).save(tmp_path / "x.csv")
     with pytest.raises(AttributeError, match="did you mean 'controls'"):
         hop.solve(N=10).controlls
-
-
-def test_the_only_control_needs_no_name(hop):
-    assert hop.simulate(u=np.full(4, 0.5)).end["x"] == hop.simulate(u={"v": [0.5] * 4}).end["x"]

@@ -85,7 +85,7 @@ def test_both_sides_of_a_jump_are_drawn(models):
 def test_linear_controls_are_drawn_through_their_values(models):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
-    solution = fdcc.Model(models / "block.fdc").solve(controls="linear", sigma=0.1, N=20)
+    solution = fdcc.Model(models / "block.fdc").solve(controls="linear", scheme="trapezoid", sigma=0.1, N=20)
     line = solution.plot("F")[0].lines[0]
     assert np.array_equal(line.get_ydata(), solution.document.control_nodes["values"]["F"])
 

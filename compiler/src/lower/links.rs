@@ -129,11 +129,13 @@ impl<'m> Places<'m> {
         self.ends.iter().find(|it| it.0 == end).map(|it| it.1 + place)
     }
 
-    /// Replaces the symbols in some expressions.
+    /// Replaces the symbols in some expressions. Others may be of phases that are divided now.
     pub fn apply(&self, graph: &mut Graph, outputs: &[ExprId]) -> Vec<ExprId> {
-        let places = self.model.symbols.iter();
-        let places: Vec<Option<ExprId>> =
-            places.map(|symbol| self.place(*symbol).map(|at| graph.input(at as u32))).collect();
+        let mut places = vec![None; self.model.symbols.len()];
+        for input in graph.inputs_of(outputs) {
+            let place = self.place(self.model.symbols[input as usize]);
+            places[input as usize] = place.map(|at| graph.input(at as u32));
+        }
         graph.substitute(outputs, &|symbol| places[symbol as usize])
     }
 }

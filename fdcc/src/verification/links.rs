@@ -1,6 +1,7 @@
 //! Links between the replays of phases.
 
 use super::Verification;
+use super::motion::Motion;
 use crate::record::{Record, find};
 use fdcc_runtime::problem::{Chain, Columns, End, Link, Problem, Variable};
 
@@ -50,8 +51,13 @@ impl Ends {
             let at = replay.system.states.iter().position(|own| own.name == it.name);
             *state = at.and_then(|at| replay.simulation.end.get(at).copied()).unwrap_or(*state);
         }
-        let size = |column: &Vec<f64>| column.iter().fold(0.0, |size: f64, it| size.max(it.abs()));
-        let sizes = states.iter().chain(&controls).map(size).collect();
+        // What stays at 0 but for rounding has the size of that.
+        let size = |(column, of): (&Vec<f64>, &Variable)| {
+            let least = Motion::still(of.unit).rounding;
+            column.iter().fold(least, |size: f64, it| size.max(it.abs()))
+        };
+        let columns = states.iter().chain(&controls);
+        let sizes = columns.zip(problem.states.iter().chain(&problem.controls)).map(size).collect();
         Ends { signals: [own(<[f64]>::first), last], sizes }
     }
 

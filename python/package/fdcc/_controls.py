@@ -19,8 +19,7 @@ if TYPE_CHECKING:
     from ._model import Model
 
 Controls = Solution | str | PathLike[str] | Mapping[str, Any] | None
-"""A solution, the path of a saved one, or values of each control in SI; of the only control without
-its name, too."""
+"""A solution, the path of a saved one, or values of each control in SI."""
 
 
 @contextmanager
@@ -34,8 +33,6 @@ def driver(u: Controls, model: "Model") -> Iterator[Any]:
 
 
 def _rows(own: Any, names: tuple[str, ...]) -> tuple[list[float] | None, list[list[float]]]:
-    if not hasattr(own, "keys") and len(names) == 1 and np.iterable(own):
-        own = {names[0]: own}
     if not hasattr(own, "keys"):
         needs = "a solution, the path of a saved one, or values of each control by name"
         raise TypeError(f"`u` cannot be {short(own)}; it needs {needs}")

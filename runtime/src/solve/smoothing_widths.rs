@@ -12,8 +12,8 @@ use super::Watch;
 use super::grid_sequencing::grids;
 use super::run::{Run, Target, is_lost, is_retried};
 use super::tuning::smoothing_widths::{
-    DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, ROUNDING,
-    SHRUNK, THINNER, TOO_THIN, TOO_WIDE, WIDE,
+    DECREASE, FIRST_FACTOR, LAST_FACTOR, MOST_FAILURES, MOST_ITERATIONS, MOST_SIZINGS, ROUGH,
+    ROUNDING, SHRUNK, THINNER, TOO_THIN, TOO_WIDE, WIDE, WIDER,
 };
 use crate::nlp::{Solution, Start, Status};
 use crate::transcribe::chain::ChainNlp;
@@ -166,17 +166,44 @@ impl Run<'_> {
         }
     }
 
-    /// The widest layer: over coarse grids, or at once.
+    /// The widest layer: over coarse grids where there are any, from far wider ones, or at once and
+    /// with all patience.
     fn first(&mut self, nlp: &mut ChainNlp, start: Start, watch: &mut Watch) -> Solution {
         let grids = grids(self.chain);
-        if start.warm.is_none() && grids.len() > 1 {
-            let solution =
-                self.over_grids(nlp, start.clone(), (&grids, &[]), self.patience(), watch);
-            if !is_retried(&solution.status) {
+        if start.warm.is_some() {
+            return self.solve(nlp, &start, self.target(), watch);
+        }
+        let is_coarse = grids.len() > 1;
+        let found = match is_coarse {
+            true => self.over_grids(nlp, start.clone(), (&grids, &[]), self.patience(), watch),
+            false => self.solve(nlp, &start, self.patience(), watch),
+        };
+        if !is_retried(&found.status) {
+            return found;
+        }
+        let wider = self.from_wider(nlp, start.clone(), watch);
+        if !is_retried(&wider.status) {
+            return wider;
+        }
+        let is_same = !is_coarse && found.status != Status::IterationLimit;
+        if is_same { found } else { self.solve(nlp, &start, self.target(), watch) }
+    }
+
+    /// From layers on both sides of which something changes, wherever the guess is, to these.
+    fn from_wider(&mut self, nlp: &mut ChainNlp, mut start: Start, watch: &mut Watch) -> Solution {
+        let widths = self.sigma.clone();
+        let rough = Target { tol: self.target().tol.max(ROUGH), ..self.patience() };
+        for factor in WIDER {
+            self.sigma = widths.iter().map(|width| factor * width).collect();
+            let solution = self.solve(nlp, &start, rough, watch);
+            if !solution.status.is_solved() {
+                self.sigma = widths;
                 return solution;
             }
+            start = Start::after(&solution);
         }
-        self.solve(nlp, &start, self.target(), watch)
+        self.sigma = widths;
+        self.solve(nlp, &start, self.patience(), watch)
     }
 
     /// What was found with the widest layer; where it is lost, with thinner ones, relative to the

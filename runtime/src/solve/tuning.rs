@@ -50,6 +50,10 @@ pub(crate) mod smoothing_widths {
     pub(crate) const LAST_FACTOR: f64 = 0.01;
     /// Where the first cannot be solved.
     pub(crate) const THINNER: [f64; 3] = [0.1, 0.03, 0.01];
+    /// So many times as wide where it cannot be solved over coarse grids, and the tolerance on the
+    /// way.
+    pub(crate) const WIDER: [f64; 3] = [8.0, 4.0, 2.0];
+    pub(crate) const ROUGH: f64 = 1e-4;
     /// From one width to the next; after a failure the square root of it, and so on.
     pub(crate) const DECREASE: f64 = 0.3;
     pub(crate) const MOST_FAILURES: usize = 3;

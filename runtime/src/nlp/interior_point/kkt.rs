@@ -125,6 +125,13 @@ impl Kkt {
         }
     }
 
+    /// Takes the barrier out of the matrix of variables (one entry each) but of those that are near
+    /// a bound.
+    pub(super) fn forget_barrier(&mut self, is_near: &[bool]) {
+        let sigma = self.sigma.iter_mut().zip(is_near).filter(|it| !it.1);
+        sigma.for_each(|(sigma, _)| *sigma = 0.0);
+    }
+
     /// Gradient over `y` of the barrier function but for the objective, at the iterate that was
     /// assembled last.
     pub(super) fn barrier_gradient(&self) -> &[f64] {

@@ -13,7 +13,7 @@
 use super::algorithm::Algorithm;
 use super::iterate::{SearchDirection, Values};
 use super::tuning::saddle::{
-    FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
+    AWAY, FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
     MOST_HALVINGS, MOST_ITERATIONS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SIGN_PATTERNS, SPREAD,
 };
 use super::vectors::dot;
@@ -49,6 +49,25 @@ impl Algorithm {
         self.is_saddle = self.departures >= MOST_DEPARTURES || !self.depart(nlp, &mut step, gain);
         self.departures += 1;
         if self.is_saddle { Departure::Impossible } else { Departure::Taken }
+    }
+
+    /// Whether the barrier is all that keeps variables between their bounds from gaining what
+    /// counts: without it the inertia is wrong. With a smaller barrier parameter it tells.
+    pub(super) fn hides_curvature(&mut self, nlp: &dyn Nlp, found: &Assessment) -> bool {
+        let worth = self.barrier.mu * self.formulation.bounds() as f64;
+        if worth <= found.least_gain(self.options.tol) {
+            return false;
+        }
+        let (reach, least) = (self.reach(nlp), self.least_curvature(nlp, found));
+        let Algorithm { formulation, at, slopes, kkt, barrier, counts, .. } = self;
+        kkt.assemble(formulation, at, slopes, barrier);
+        let mut is_near = vec![false; reach.len()];
+        formulation.for_each_bound(&at.y, |i, distance, _| {
+            let is_far = |reach: &f64| distance > AWAY * reach;
+            is_near.get_mut(i).into_iter().for_each(|it| *it |= !reach.get(i).is_some_and(is_far));
+        });
+        kkt.forget_barrier(&is_near);
+        !kkt.factor_barely(formulation, slopes, barrier.mu, least, counts)
     }
 
     /// A point (one value per variable) beside the iterate, which stays, if that is no minimum.
@@ -238,7 +257,8 @@ impl Algorithm {
                 if is_good {
                     (self.at.y, self.values, self.fresh) = (y, values, false);
                     self.counts.iterations += 1;
-                    self.barrier.raise(ROOM);
+                    // A barrier that is worth more than the gain would push it back.
+                    self.barrier.raise(ROOM.min(gain));
                     self.begin_anew(nlp);
                     return true;
                 }

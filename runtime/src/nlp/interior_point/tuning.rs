@@ -160,6 +160,8 @@ pub(crate) mod saddle {
     pub(crate) const SHORT_STEPS: [f64; 3] = [1e-3, 1e-2, 1e-1];
     /// A quantity that is smaller than this part of its nominal magnitude is 0.
     pub(crate) const NOTHING: f64 = 1e-6;
+    /// A bound that is farther away than this part of the size of a variable is not active.
+    pub(crate) const AWAY: f64 = 1e-2;
     /// Curvature is negative if it is more than this part of its terms.
     pub(crate) const ROUNDING: f64 = 1e-9;
     /// A step along the direction has to gain this part of what curvature says.
@@ -192,7 +194,7 @@ pub(crate) mod termination {
     pub(crate) const FALLS: usize = 10;
     /// The target is not lowered below this part of the tolerance, nor faster than that; lower ones
     /// are given up after so many iterations.
-    pub(crate) const LEAST_TARGET: f64 = 1e-5;
+    pub(crate) const LEAST_TARGET: f64 = 1e-7;
     pub(crate) const FASTEST: f64 = 1e-2;
     pub(crate) const SLOWEST: f64 = 0.3;
     pub(crate) const PATIENCE: usize = 20;

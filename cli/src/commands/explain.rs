@@ -4,7 +4,7 @@ use crate::exit::Exit;
 use clap::Args;
 use fdcc_grammar::Code;
 
-use crate::output;
+use crate::output::{self, manual};
 
 /// Explain a diagnostic, with a wrong and a right model, or what a verdict says
 #[derive(Args)]
@@ -20,12 +20,12 @@ impl Explain {
     /// Prints the page of the code.
     pub fn run(self) -> Exit {
         if self.code.eq_ignore_ascii_case("verdict") {
-            output::print(VERDICT);
+            output::print(&manual::for_terminal(VERDICT));
             return Exit::Fine;
         }
         match self.code.parse::<Code>() {
             Ok(code) => {
-                output::print(code.page());
+                output::print(&manual::for_terminal(code.page()));
                 Exit::Fine
             }
             Err(()) => {
@@ -40,8 +40,11 @@ impl Explain {
     }
 }
 
-/// The codes of the group that was meant, or all.
+/// The codes of the group that was meant, or all; the verdict where that was.
 fn similar(code: &str) -> String {
+    if code.to_ascii_lowercase().starts_with("ver") {
+        return "did you mean `fdcc explain verdict`?".into();
+    }
     let digits: String = code.chars().filter(char::is_ascii_digit).collect();
     let prefix = format!("FDC{}", digits.get(..2).unwrap_or_default());
     let same_group = |code: &&Code| code.as_str().starts_with(&prefix);

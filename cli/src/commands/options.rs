@@ -104,7 +104,8 @@ pub struct Options {
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]
     pub json: bool,
-    /// Write MODEL.sol.json, MODEL.csv and MODEL.html to this folder
+    /// Write MODEL.sol.json, MODEL.csv and MODEL.html to this folder; a sweep writes its rows there,
+    /// and a page of them
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Start from an earlier .sol.json; its N, scheme and sigma may be others

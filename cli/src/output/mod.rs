@@ -13,6 +13,7 @@ pub mod files;
 pub mod gradient;
 mod gradient_words;
 pub mod hamiltonian_check;
+pub mod manual;
 mod method_used;
 pub mod modes;
 pub mod named;

@@ -27,6 +27,7 @@ impl Reach {
     pub fn words(&self, units: &Units) -> String {
         let [value, bound] =
             [self.value, self.bound].map(|it| units.violation(&self.condition, it, 4));
+        let value = if self.value == 0.0 { "0, to rounding,".into() } else { value };
         let sure = match self.proved {
             true => "proved: no more is possible on this grid",
             false => "the best near the guess",

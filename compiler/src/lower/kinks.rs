@@ -10,9 +10,10 @@
 //! Each `e` that time, a state or a control moves gets a selector behind those of the surfaces,
 //! which says on which side of 0 it is. So the right side is smooth on each side and goes on
 //! smoothly beyond, and what crosses a kink can be found and differentiated like what crosses a
-//! surface. Those that only parameters move stay in the right side: nothing crosses them. Where `e` is the function of a surface, the selector of that surface says it already,
-//! unless the right side has no value beyond: `sqrt(-x)` above 0 is none, and a step that crosses
-//! `x = 0` has a stage there.
+//! surface. Those that only parameters move stay in the right side: nothing crosses them. Where
+//! `e` is the function of a surface, the selector of that surface says it already, unless the
+//! right side has no value beyond: `sqrt(-x)` above 0 is none, and a step that crosses `x = 0` has
+//! a stage there.
 
 use super::function::VectorFunction;
 use crate::expressions::blend::sides;

@@ -271,9 +271,11 @@ pub(crate) fn system(
     numbers: &Numbers,
     functions: Vec<Arc<dyn Function>>,
 ) -> simulate::System {
-    let [flow, rates, switching, resets, objective, guess, interval, start, kinks, fixed_kinks]: [Arc<
-        dyn Function,
-    >; 10] = functions.try_into().unwrap_or_else(|_| unreachable!("a system has ten functions"));
+    type All = [Arc<dyn Function>; 10];
+    let all: All =
+        functions.try_into().unwrap_or_else(|_| unreachable!("a system has ten functions"));
+    let [flow, rates, switching, resets, objective, guess, interval, start, kinks, fixed_kinks] =
+        all;
     let first_sigma = model.params.len() + model.frees.len();
     let parameters = parameters(model, simulated.layout.p, numbers);
     let values: Vec<f64> = parameters.iter().map(|parameter| parameter.value).collect();

@@ -4,7 +4,7 @@
 use super::multistart;
 use super::report::{Options, Part, Start};
 use super::solution::Solution;
-use super::tuning::reach::{MOST_ITERATIONS, NOTHING};
+use super::tuning::reach::{MOST_ITERATIONS, NOTHING, ROUNDING};
 use crate::error::Error;
 use fdcc_compiler::Model as Meaning;
 use fdcc_runtime::nlp::Status;
@@ -25,7 +25,7 @@ use fdcc_runtime::problem::Bounds;
 pub struct Reach {
     /// The condition in the words of the model.
     pub condition: String,
-    /// What it bounds, at its best.
+    /// What it bounds, at its best; 0 where that is less than a solve can tell from 0.
     pub value: f64,
     /// The bound that this is to have.
     pub bound: f64,
@@ -73,6 +73,7 @@ impl Solution {
         let is_short = (bound - value).abs() > NOTHING * bound.abs().max(value.abs());
         let is_found = best.status.is_solved() && is_short;
         let condition = self.problem.boundary.origin(row + 1).label.to_string();
+        let value = if value.abs() > ROUNDING * bound.abs() { value } else { 0.0 };
         is_found.then_some(Reach { condition, value, bound, is_proved: best.global })
     }
 

@@ -57,6 +57,8 @@ pub(super) mod optimality {
 pub(super) mod reach {
     /// What is less than this part of the numbers that differ is no distance.
     pub(crate) const NOTHING: f64 = 1e-6;
+    /// Nor is what is less than this part of the bound anything but 0.
+    pub(crate) const ROUNDING: f64 = 1e-10;
     /// A search that takes more iterations is given up: this is news of a failure, not an answer.
     pub(crate) const MOST_ITERATIONS: usize = 200;
 }

@@ -266,6 +266,8 @@ pub(crate) mod between {
     /// A straight line may be off by this part of how far a state has moved: less than the width of
     /// the line in a picture.
     pub(crate) const STRAIGHT: f64 = 0.002;
+    /// It is looked at these parts of its length: a curve may cross it in the middle.
+    pub(crate) const SEEN: [f64; 2] = [0.25, 0.75];
     /// Halves of halves of one step.
     pub(crate) const MOST_HALVINGS: usize = 8;
 }

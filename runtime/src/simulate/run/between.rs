@@ -3,7 +3,7 @@
 
 use super::Run;
 use crate::simulate::steps::Step;
-use crate::simulate::tuning::between::{MOST_HALVINGS, STRAIGHT};
+use crate::simulate::tuning::between::{MOST_HALVINGS, SEEN, STRAIGHT};
 
 impl Run<'_> {
     /// Notes points inside of the first `part` of a step, so many that straight lines between all
@@ -25,7 +25,7 @@ impl Run<'_> {
             let gaps = seen.iter().zip(lines).map(|(seen, line)| (seen - line).abs());
             gaps.zip(self.record.extents()).any(|(gap, extent)| gap > STRAIGHT * extent)
         };
-        if halvings == 0 || !(is_off(0.25) || is_off(0.75)) {
+        if halvings == 0 || !SEEN.into_iter().any(is_off) {
             return;
         }
         let middle = step.exactly_at(&mut self.field, at(0.5) * step.h);

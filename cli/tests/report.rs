@@ -2,12 +2,13 @@
 
 use crate::common::*;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A page, and the document that it draws.
 struct Page {
     text: String,
     document: Value,
+    path: PathBuf,
 }
 
 /// Solves a model with some options.
@@ -25,7 +26,7 @@ fn read(path: &Path) -> Page {
     let document = text.split("id=\"solution-0\">").nth(1).expect("the page has its document");
     let document = document.split("</script>").next().expect("it ends");
     let document = serde_json::from_str(document).expect("it is JSON");
-    Page { text, document }
+    Page { text, document, path: path.to_owned() }
 }
 
 /// What stands between the tags of a page but for scripts and styles.
@@ -149,6 +150,33 @@ fn the_page_of_the_race_car_has_its_replay_and_is_small() {
     assert!(number(&page.document["convergence"]["N"][0]) == 125.0);
 }
 
+/// What was measured, over the curve of the model; what remains; what the estimates are worth.
+#[test]
+fn the_page_of_a_fit_has_its_data_and_its_estimates() {
+    let page = page("page_fit", &[], "slider_fit", &[]);
+    for told in ["<h2>Estimates</h2>", "0.3022114", "± 0.00136", "-0.9987", "key-points\">measured"]
+    {
+        assert!(page.markup().contains(told), "{told}: {}", page.markup());
+    }
+    let x = &page.document["residuals"][0];
+    let [data, deviation, value] =
+        ["measured", "deviation", "values"].map(|key| number(&x[key][2]));
+    // The third row of slider.csv.
+    assert_eq!([data, deviation], [0.1246, 0.01]);
+    let time = page.document["time"].as_array().expect("times");
+    let at = time.iter().position(|it| number(it) >= 0.4).expect("the row is within");
+    let model = number(&page.document["states"]["x"][at]);
+    assert!((model - (data + value * deviation)).abs() < 2e-3, "{model}");
+    let drawn = page.text.split("id=\"page\">").nth(1).expect("what is drawn");
+    assert!(drawn.contains("\"kind\":\"points\"") && drawn.contains("\"kind\":\"stems\""));
+    let svg = page.path.with_file_name("x.svg");
+    let plot = ["plot", "slider_fit.sol.json", "--signal", "x", "--out", "x.svg"];
+    let folder = page.path.parent().expect("a folder");
+    expect_exit(&fdcc(folder, &plot, ""), 0, "plot");
+    let svg = std::fs::read_to_string(svg).expect("it was written");
+    assert_eq!(svg.matches("<circle").count(), 21, "{svg}");
+}
+
 #[test]
 fn names_of_a_model_and_its_text_are_no_markup() {
     let text = "model odd # </script><b>&\ntime t in [0, 1]\nstate x start 0\n\
@@ -158,7 +186,7 @@ fn names_of_a_model_and_its_text_are_no_markup() {
     assert_eq!(page.document["source"].as_str(), Some(text));
 }
 
-fn solutions(test: &str) -> std::path::PathBuf {
+fn solutions(test: &str) -> PathBuf {
     let folder = folder(test, &[("ramp.fdc", RAMP.as_bytes())]);
     let sweep =
         ["sweep", "ramp.fdc", "goal=1,2", "--out", "all", "--trajectories", "--log", "none"];

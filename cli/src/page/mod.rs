@@ -6,14 +6,17 @@
 mod cells;
 mod curves;
 mod drawing;
+mod estimates;
 pub mod figures;
 mod headline;
 pub mod json;
+mod measured;
 pub mod notebook;
 pub mod pdf;
 pub mod plots;
 mod runs;
 mod sections;
+mod sizes;
 mod strips;
 pub mod svg;
 pub mod sweep;
@@ -57,6 +60,7 @@ pub fn page(documents: &[Json], names: &[&str]) -> String {
         header(documents, names),
         tools(&drawing),
         pictures(&drawing),
+        documents.iter().map(estimates::estimates).collect(),
         convergence(documents, names),
         documents.iter().map(tables::tables).collect(),
         data(documents, &drawing),

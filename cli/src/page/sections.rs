@@ -1,7 +1,7 @@
 //! The pictures of a page: an empty place for each, with its caption.
 
 use super::drawing::Drawing;
-use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, STATES};
+use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, RESIDUALS, STATES};
 use super::json::Json;
 use super::plots::PLOTS;
 use super::tags::{escape, section};
@@ -13,8 +13,13 @@ pub fn tools(drawing: &Drawing) -> String {
         format!("<span class=\"key key-{at}\">{}</span>\n", escape(name))
     };
     let mut keys: String = drawing.names.iter().enumerate().map(key).collect();
-    if drawing.figures.iter().any(|it| it.curves.iter().any(|it| it.kind == Kind::Replay)) {
+    let has =
+        |kind: Kind| drawing.figures.iter().any(|it| it.curves.iter().any(|it| it.kind == kind));
+    if has(Kind::Replay) {
         keys += "<span class=\"key key-replay\">replay on the true system</span>\n";
+    }
+    if has(Kind::Points) {
+        keys += "<span class=\"key key-points\">measured</span>\n";
     }
     format!(
         "<div class=\"tools\">\n{keys}<span>drag to zoom all plots</span>\n\
@@ -73,6 +78,7 @@ fn asked(drawing: &Drawing) -> String {
 fn heading(group: &str) -> &str {
     match group {
         COSTATES => "Costates: what the objective changes by with a state",
+        RESIDUALS => "Residuals: the model less what was measured",
         HAMILTONIAN => "Hamiltonian: running cost, and costates times right side",
         other => other,
     }

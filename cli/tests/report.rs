@@ -150,6 +150,20 @@ fn the_page_of_the_race_car_has_its_replay_and_is_small() {
     assert!(number(&page.document["convergence"]["N"][0]) == 125.0);
 }
 
+/// The page runs what was run, not what the model would be without its options.
+#[test]
+fn the_page_says_how_it_is_run_again() {
+    let text = RAMP.replace("model ramp", "model odd");
+    let files: [(&str, &[u8]); 1] = [("odd.fdc", text.as_bytes())];
+    let page = page("page_again", &files, "odd", &["--set", "goal=0.5", "--method", "N=12"]);
+    let again = "<pre>fdcc solve odd.fdc --set goal=0.5 --method N=12 --out results\n\
+                 fdcc verify results/odd.sol.json odd.fdc</pre>";
+    assert!(page.markup().contains(again), "{}", page.markup());
+    let command = &page.document["command"];
+    let given = ["solve", "odd.fdc", "--set", "goal=0.5", "--method", "N=12"];
+    assert_eq!(*command, serde_json::json!(given));
+}
+
 /// What was measured, over the curve of the model; what remains; what the estimates are worth.
 #[test]
 fn the_page_of_a_fit_has_its_data_and_its_estimates() {

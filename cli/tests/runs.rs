@@ -22,7 +22,8 @@ fn a_simulation_has_a_page_with_its_events() {
     assert!(stdout(&output).contains("./bounce.sim.html"), "{}", stdout(&output));
     let page = page(&folder, "bounce.sim.html");
     assert!(page.contains("Simulated to the end, 2 events"));
-    assert!(page.contains("fdcc simulate bounce.fdc") && !page.contains("fdcc solve"));
+    let again = format!("<pre>fdcc simulate {} --out results", model("bounce"));
+    assert!(page.contains(&again) && !page.contains("fdcc solve"));
     let drawn = drawing(&page);
     let marks: Vec<f64> =
         drawn["marks"].as_array().expect("marks").iter().map(|it| number(&it["time"])).collect();
@@ -44,12 +45,13 @@ method { N = 10 scheme = implicit_euler }
 #[test]
 fn a_closed_loop_writes_a_page_and_a_table() {
     let folder = folder("loop_page", &[("follow.fdc", LOOP.as_bytes())]);
-    let output = fdcc(&folder, &["mpc", "follow.fdc", "--steps", "7", "--out", "run"], "");
+    let mpc = ["mpc", "follow.fdc", "--steps", "7", "--method", "tol=1e-7", "--out", "run"];
+    let output = fdcc(&folder, &mpc, "");
     expect_exit(&output, 0, "mpc");
     assert!(stdout(&output).contains(" wrote run/follow.mpc.json"), "{}", stdout(&output));
     let page = page(&folder, "run/follow.mpc.html");
     assert!(page.contains("In closed loop: 7 steps, all are solved"));
-    assert!(page.contains("fdcc mpc follow.fdc --steps 7"));
+    assert!(page.contains("fdcc mpc follow.fdc --steps 7 --method tol=1e-7 --out results</pre>"));
     let drawn = drawing(&page);
     let names: Vec<&str> = drawn["figures"]
         .as_array()
@@ -78,6 +80,7 @@ fn a_sweep_has_a_picture_that_marks_what_failed() {
     expect_exit(&output, 2, "one row is infeasible");
     let page = sweep_page(&folder.join("runs"));
     assert!(page.contains("2 of 3 rows can be used, 1 not solved"), "{page}");
+    assert!(page.contains("<pre>fdcc sweep ramp.fdc goal=1,3,5 --out results</pre>"), "{page}");
     assert_eq!(page.matches("<svg").count(), 1);
     let arguments = ["sweep", "ramp.fdc", "goal=1,2", "N=4,8", "--product", "--out", "grid"];
     expect_exit(&fdcc(&folder, &arguments, ""), 0, "a product");

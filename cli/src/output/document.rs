@@ -14,6 +14,7 @@ use super::reach::Reach;
 use super::tried::{Ended, Family, Happened, Tried};
 use super::units::Units;
 use super::verification::Verification;
+use crate::command;
 use crate::version::VERSION;
 use fdcc::Solution;
 use fdcc_runtime::nlp::{self, Status};
@@ -26,6 +27,9 @@ use serde::{Deserialize, Serialize};
 pub struct Document {
     pub fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub command: Vec<String>,
     pub source_sha256: String,
     pub status: String,
     pub objective: f64,
@@ -174,6 +178,7 @@ impl Document {
         Document {
             fdcc: VERSION.to_string(),
             model: problem.name.clone(),
+            command: command::given(),
             source_sha256: source_sha256.to_string(),
             status: found.status_name().to_string(),
             objective: found.objective(),

@@ -4,6 +4,7 @@ use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, significant};
 use super::units::Units;
+use crate::command;
 use crate::version::VERSION;
 use fdcc::{By, Exact, Gradient, Model, Stepped};
 use fdcc_grammar::SourceFile;
@@ -17,6 +18,9 @@ use serde::Serialize;
 pub struct GradientDocument {
     fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     pub of: String,
     #[serde(flatten)]
     pub ending: Ending,
@@ -161,6 +165,7 @@ impl GradientDocument {
         GradientDocument {
             fdcc: VERSION.to_string(),
             model: system.name.clone(),
+            command: command::given(),
             of: of.to_string(),
             ending: Ending::new(system, simulation, source),
             value: None,

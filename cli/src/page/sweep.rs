@@ -3,6 +3,7 @@
 use super::STYLE;
 use super::cells::{Cells, Dots};
 use super::tags::{Cell, escape, section, table};
+use crate::command::line;
 use crate::output::number::significant;
 use crate::output::plural;
 use crate::output::rows::{Scalars, Value};
@@ -17,6 +18,8 @@ const MOST_LISTED: usize = 500;
 pub struct Page<'p> {
     pub model: &'p str,
     pub source: &'p str,
+    /// The arguments of the sweep.
+    pub command: Vec<String>,
     pub units: &'p Units,
     /// The parameters of the model: whatever else is swept is a key of the method, without a unit.
     pub params: &'p [String],
@@ -223,8 +226,13 @@ impl Page<'_> {
     }
 
     fn text(&self) -> String {
+        let words = self.command.iter().map(String::as_str).chain(["--out", "results"]);
+        let again = match self.command.is_empty() {
+            true => String::new(),
+            false => format!("<p>To run it again:</p>\n<pre>{}</pre>\n", escape(&line(words))),
+        };
         let body = format!(
-            "<details><summary>{}.fdc</summary>\n<pre>{}</pre></details>\n",
+            "{again}<details><summary>{}.fdc</summary>\n<pre>{}</pre></details>\n",
             escape(self.model),
             escape(self.source)
         );
@@ -286,7 +294,16 @@ mod tests {
 
     fn page(rows: Vec<(usize, Scalars)>, all: usize) -> String {
         let units = Units::default();
-        Page { model: "a", source: "model <a>", units: &units, params: &[], rows, all }.html()
+        Page {
+            model: "a",
+            source: "model <a>",
+            command: vec!["sweep".into()],
+            units: &units,
+            params: &[],
+            rows,
+            all,
+        }
+        .html()
     }
 
     #[test]

@@ -4,6 +4,7 @@ use super::json::Json;
 use super::runs;
 use super::tags::{Cell, escape, section, table};
 use super::units::{of_condition, of_time, of_value, per};
+use crate::command::line;
 use crate::output::number::{scientific, significant};
 
 /// The objective, the unknowns and some parameters, large.
@@ -213,11 +214,7 @@ fn text(document: &Json) -> String {
         return String::new();
     }
     let model = document.at("model").text();
-    let solve = || {
-        let verify = format!("fdcc verify results/{model}.sol.json {model}.fdc");
-        format!("fdcc solve {model}.fdc --out results\n{verify}")
-    };
-    let again = runs::of(document).map_or_else(solve, |run| run.again(document));
+    let again = again(document);
     section(
         "The model",
         &format!(
@@ -228,6 +225,28 @@ fn text(document: &Json) -> String {
             escape(text)
         ),
     )
+}
+
+/// What runs it again: the command that was given, or what leads to such a document where nothing is
+/// known of it.
+fn again(document: &Json) -> String {
+    let model = document.at("model").text();
+    let usual = format!("{model}.fdc");
+    let given: Vec<&str> = document.at("command").list().iter().map(Json::text).collect();
+    let file = given.iter().find(|it| it.ends_with(".fdc")).unwrap_or(&usual.as_str()).to_string();
+    let given = (!given.is_empty()).then(|| line(given.into_iter().chain(["--out", "results"])));
+    match runs::of(document) {
+        Some(run) => given.unwrap_or_else(|| run.again(document)),
+        // A sweep writes many solutions.
+        None if given.as_ref().is_some_and(|it| it.starts_with("fdcc sweep")) => {
+            given.unwrap_or_default()
+        }
+        None => {
+            let verify = line(["verify", &format!("results/{model}.sol.json"), &file]);
+            let given = given.unwrap_or_else(|| line(["solve", &usual, "--out", "results"]));
+            format!("{given}\n{verify}")
+        }
+    }
 }
 
 fn number(it: &Json) -> String {

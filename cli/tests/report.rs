@@ -219,6 +219,10 @@ fn several_solutions_stand_side_by_side() {
     assert_eq!(page.text.matches("<h1 ").count(), 2);
     assert!(page.text.contains("<dt>goal</dt><dd>2</dd>"), "what differs is told");
     assert!(page.text.contains("key-0\">ramp.1") && page.text.contains("key-1\">ramp.2"));
+    for name in ["ramp.1", "ramp.2"] {
+        let heading = format!("<h2>How it was solved <span class=\"of\">{name}</span></h2>");
+        assert!(page.text.contains(&heading), "{heading}");
+    }
     let drawn = page.text.split("id=\"page\">").nth(1).expect("what is drawn");
     let drawn: Value = serde_json::from_str(drawn.split("</script>").next().expect("it ends"))
         .expect("it is JSON");

@@ -31,6 +31,48 @@ fn a_simulation_has_a_page_with_its_events() {
     assert!(marks.len() == 2 && (marks[0] - (3.0f64 / 9.81).sqrt()).abs() < 1e-6, "{marks:?}");
 }
 
+/// The derivatives come first; `fdcc report` makes the same page of the document.
+#[test]
+fn a_gradient_has_a_page_with_its_derivatives() {
+    let folder = folder("gradient_page", &[]);
+    let output = fdcc(&folder, &["grad", &model("crossing"), "--out", "."], "");
+    expect_exit(&output, 0, "grad");
+    assert!(stdout(&output).contains("./crossing.grad.html"), "{}", stdout(&output));
+    let text = page(&folder, "crossing.grad.html");
+    assert!(text.contains("Exact gradient of objective: it can be trusted"));
+    let table = text.find("<h2>Derivatives of objective</h2>").expect("a table");
+    assert!(table < text.find("<h2>States</h2>").expect("the trajectory"));
+    assert!(text.contains(">discretised (") && text.contains("<h2>Events</h2>"));
+    assert!(text.contains("class=\"open\">? open</b><span>The discretised gradient is off by"));
+    assert_eq!(drawing(&text)["figures"][0]["name"], "x");
+    let report = ["report", "crossing.grad.json", "--out", "again.html"];
+    expect_exit(&fdcc(&folder, &report, ""), 0, "report");
+    assert!(page(&folder, "again.html").contains("<h2>Derivatives of objective</h2>"));
+}
+
+/// The replay beside the plan, and what differs; also of phases.
+#[test]
+fn a_verification_has_a_page_with_the_replay() {
+    let folder = folder("verified_page", &[("ramp.fdc", RAMP.as_bytes())]);
+    let hop = format!("{}/../models/twostage.fdc", env!("CARGO_MANIFEST_DIR"));
+    for (name, file) in [("ramp", "ramp.fdc"), ("twostage", &hop)] {
+        expect_exit(&fdcc(&folder, &["solve", file, "--out", ".", "--log", "none"], ""), 0, name);
+        let verify = ["verify", &format!("{name}.sol.json"), file, "--out", "."];
+        let output = fdcc(&folder, &verify, "");
+        expect_exit(&output, 0, name);
+        assert!(stdout(&output).contains(&format!("./{name}.verify.html")), "{}", stdout(&output));
+        let text = page(&folder, &format!("{name}.verify.html"));
+        assert!(
+            text.contains("<h1 class=\"certain\">The solution is confirmed on the true system")
+        );
+        assert!(text.contains("<h2>Replay less solution"), "{name}");
+        let figures = drawing(&text)["figures"].clone();
+        assert_eq!(figures[0]["curves"][1]["kind"], "replay", "{name}");
+        let report = ["report", &format!("{name}.verify.json"), "--out", "again.html"];
+        expect_exit(&fdcc(&folder, &report, ""), 0, "report");
+    }
+}
+
 /// It goes to 1, in ten steps of 0.1.
 const LOOP: &str = "\
 model follow

@@ -151,7 +151,7 @@ fn tolerances(document: &Json) -> Claim {
     }
 }
 
-fn replayed(document: &Json) -> Vec<Claim> {
+pub(super) fn replayed(document: &Json) -> Vec<Claim> {
     let replay = document.at("verification");
     if replay.is_absent() && is_certified(document) {
         return Vec::new();

@@ -120,8 +120,12 @@ const HUES: usize = 8;
 
 /// One signal over another, where there are two.
 fn portrait(drawing: &Drawing) -> String {
-    let states = drawing.figures.iter().filter(|it| it.group == STATES).count();
-    if states < 2 {
+    let states = || drawing.figures.iter().filter(|it| it.group == STATES);
+    let has_two = |of: usize| {
+        let own = states().filter(|it| it.curves.iter().any(|curve| curve.of == of));
+        own.count() >= 2
+    };
+    if !(0..drawing.names.len()).any(has_two) {
         return String::new();
     }
     let choice = |id: &str| format!("<select id=\"{id}\"></select>");

@@ -14,11 +14,15 @@ pub fn tiles(document: &Json, params: &[&str]) -> String {
     let objective = document.at("objective").number().map(|it| ("objective".to_owned(), it));
     let free = document.at("free").pairs().iter();
     let free = free.filter_map(|(name, it)| Some((name.clone(), it.number()?)));
+    let of = document.at("value").number();
+    let value = of.map(|it| (document.at("of").text().to_owned(), it));
     let tile = |(name, value): (String, f64)| {
-        let value = of_value(document, &name).value(value, 7);
+        let is_value = document.at("of").text() == name;
+        let unit = of_value(document, if is_value { "objective" } else { &name });
+        let value = unit.value(value, 7);
         format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(&name), escape(&value))
     };
-    let tiles: String = params.chain(objective).chain(free).map(tile).collect();
+    let tiles: String = params.chain(objective).chain(value).chain(free).map(tile).collect();
     format!("<dl class=\"tiles\">\n{tiles}</dl>\n")
 }
 
@@ -34,7 +38,7 @@ pub fn differing(documents: &[Json]) -> Vec<&str> {
 /// All tables of a document, and its text.
 pub fn tables(document: &Json) -> String {
     if runs::of(document).is_some() {
-        return runs::table_of_events(document) + &text(document);
+        return runs::tables(document) + &text(document);
     }
     [
         sensitivities(document),

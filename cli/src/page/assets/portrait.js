@@ -158,12 +158,28 @@ function drawPortrait(element, over, of, isToScale, more = {}) {
 function portrait(element) {
   const figures = choices();
   const [over, of, isToScale] = ["over", "of", "to-scale"].map((id) => document.getElementById(id));
-  const option = (figure, at) => new Option(figure.name, at);
-  [over, of].forEach((list) => list.replaceChildren(...figures.map(option)));
-  const first = figures.findIndex((figure) => figure.name.endsWith(".x"));
-  over.value = Math.max(first, 0);
-  of.value = Math.max(first, 0) + 1;
-  isToScale.checked = first >= 0;
+  const titled = (figure) => {
+    const isAlone = figures.filter((it) => it.name === figure.name).length === 1;
+    return isAlone ? figure.name : `${figure.name} [${figure.unit.name || "1"}]`;
+  };
+  const fill = (list, all) =>
+    list.replaceChildren(...all.map((figure) => new Option(titled(figure), figures.indexOf(figure))));
+  const partners = (figure) => figures.filter((it) => it !== figure && paired(figure, it).length);
+  const overs = figures.filter((figure) => partners(figure).length);
+  fill(over, overs);
+  const first = overs.find((figure) => figure.name.endsWith(".x"));
+  over.value = figures.indexOf(first ?? overs[0]);
+  isToScale.checked = first !== undefined;
+  // Two solutions may have a signal each that the other has not.
+  const offer = () => {
+    const [all, before] = [partners(figures[over.value]), of.value];
+    fill(of, all);
+    const next = all.find((figure) => figures.indexOf(figure) > over.value) ?? all[0];
+    const isThere = all.includes(figures[before]);
+    of.value = isThere ? before : figures.indexOf(next);
+  };
+  offer();
+  over.addEventListener("change", offer);
   let own;
   const draw = () => {
     if (own) {

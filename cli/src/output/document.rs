@@ -10,7 +10,7 @@ use super::named::Named;
 use super::optimality::Optimality;
 use super::phases::Phase;
 use super::picture::Picture;
-use super::reach::Reach;
+use super::reach::{LargestViolation, Reach};
 use super::tried::{Ended, Family, Happened, Tried};
 use super::units::Units;
 use super::verification::Verification;
@@ -118,6 +118,9 @@ pub struct Document {
     /// How far the condition in the way can be met; only where nothing feasible was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reach: Option<Reach>,
+    /// What is violated most; only where nothing feasible was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_violation: Option<LargestViolation>,
 }
 
 /// The values between which a control is linear, or through which it is a polynomial on each
@@ -224,6 +227,11 @@ impl Document {
                 .map(|it| Certificate::new(it, is_smooth(found))),
             verification: None,
             reach: None,
+            largest_violation: outcome
+                .limiting
+                .as_ref()
+                .filter(|_| solution.status == Status::Infeasible)
+                .map(LargestViolation::from),
         }
     }
 

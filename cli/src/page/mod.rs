@@ -24,6 +24,7 @@ pub mod sweep;
 mod tables;
 mod tags;
 mod units;
+mod unsolved;
 mod verified;
 mod whole;
 

@@ -14,8 +14,13 @@ pub fn pieces(document: &Json, figure: &Figure, curve: &Curve) -> Vec<Piece> {
     let [time, values] = [&curve.time, &curve.values].map(|keys| under(document, keys).column());
     let before = values_before(document, curve, &time);
     let (second, unit) = (of_time(document).si, figure.unit.si);
+    let between = between(document, curve);
     let mut all = vec![Piece::new()];
     for (k, &t) in time.iter().enumerate() {
+        if let Some(before) = k.checked_sub(1).and_then(|k| time.get(k)) {
+            let inner = inner(&between, [*before, t]).map(|(t, value)| (t / second, value / unit));
+            all.last_mut().expect("there is one").extend(inner);
+        }
         let value = if is_stepped(curve) { values.get(k).or(values.last()) } else { values.get(k) };
         let value = value.copied().unwrap_or(f64::NAN);
         let point = |value: f64| (t / second, value / unit);
@@ -46,6 +51,25 @@ pub fn pieces(document: &Json, figure: &Figure, curve: &Curve) -> Vec<Piece> {
     all.retain(|piece| !piece.is_empty());
     all
 }
+
+/// Points between those of a grid.
+fn between(document: &Json, curve: &Curve) -> Piece {
+    let Some(keys) = &curve.between else { return Piece::new() };
+    let [time, values] = [0, 1].map(|at| under(document, &keys[at]).column());
+    time.into_iter().zip(values).filter(|it| it.0.is_finite() && it.1.is_finite()).collect()
+}
+
+/// Those between two times, but for those that may be at one of them: on which side of a jump they
+/// are is not known.
+fn inner(all: &Piece, [from, to]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
+    let span = all.first().zip(all.last()).map_or(0.0, |(first, last)| last.0 - first.0);
+    let room = ROOM * span;
+    let first = all.partition_point(|it| it.0 <= from + room);
+    all[first..].iter().take_while(move |it| it.0 < to - room).copied()
+}
+
+/// Of the whole time.
+const ROOM: f64 = 1e-6;
 
 fn is_stepped(curve: &Curve) -> bool {
     curve.kind == Kind::Steps
@@ -167,6 +191,23 @@ mod tests {
         let all = of(r#"{"phases":{"a":{"time":[0,1,2,3],"costates":{"x":[1,2,3,-50]}}}}"#);
         let before = vec![(0.0, 1.0), (1.0, 2.0), (2.0, 3.0), (3.0, 4.0)];
         assert_eq!(all[0], [before, vec![(3.0, -50.0)]]);
+    }
+
+    /// Three nodes of a certified solution, and what its replay does between them.
+    #[test]
+    fn a_certified_state_goes_through_its_replay_between_nodes() {
+        let text = |certified: bool| {
+            format!(
+                r#"{{"time":[0,1,2],"states":{{"x":[0,1,5]}},"jumps":[{{"time":1,"before":
+                    {{"x":2}}}}],"certificate":{{"certified":{certified}}},"verification":{{
+                    "state_gap":1e-9,"replay":{{"time":[0,0.5,1,1.5,2],
+                    "states":{{"x":[0,0.7,2,3,5]}}}}}}}}"#
+            )
+        };
+        let through =
+            [vec![(0.0, 0.0), (0.5, 0.7), (1.0, 2.0)], vec![(1.0, 1.0), (1.5, 3.0), (2.0, 5.0)]];
+        assert_eq!(of(&text(true))[0], through);
+        assert_eq!(of(&text(false))[0][1], [(1.0, 1.0), (2.0, 5.0)]);
     }
 
     #[test]

@@ -64,6 +64,9 @@ pub struct Curve {
     /// The keys that lead to the half lengths of error bars, and what they are multiplied by.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub bars: Option<(Vec<String>, f64)>,
+    /// The keys that lead to times and values between those of the grid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub between: Option<[Vec<String>; 2]>,
     /// Whether its last value is that behind a jump: the next phase begins with it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub ends_in_jump: bool,
@@ -274,8 +277,22 @@ fn curve(part: &Part, group: &Group, name: &str) -> Curve {
         (group.kind, part.keys(&["time"]), part.keys(&[group.key, name]))
     };
     let ends_in_jump = group.key == "costates" && ends_in_jump(part, name);
-    Curve { label: label(part), of: part.of, kind, time, values, ends_in_jump, ..Curve::default() }
+    let replay = replay(part, group, name).filter(|_| follows_replay(part));
+    let between = replay.map(|it| [it.time, it.values]);
+    let (label, of) = (label(part), part.of);
+    Curve { label, of, kind, time, values, between, ends_in_jump, ..Curve::default() }
 }
+
+/// Whether a solution is what its replay does, so that this is known between the few points of a
+/// grid of high order: it is certified, and both are the same to more digits than are seen.
+fn follows_replay(part: &Part) -> bool {
+    let is_certified = part.document.at("certificate").at("certified").is_true();
+    let gap = part.json.at("verification").at("state_gap").number();
+    is_certified && gap.is_some_and(|gap| gap < SEEN)
+}
+
+/// Of how far a state moves.
+const SEEN: f64 = 1e-5;
 
 /// Whether the last step of a costate in a phase is a jump: the grid has the costate behind a
 /// condition that is active until the phase ends, with which the next phase begins.

@@ -34,6 +34,17 @@ function jumpsBetween(curve, a, b) {
   return curve.values.includes("control_nodes") && events.some(({ time }) => a < time && time < b);
 }
 
+/// Points between those of a grid that a certified solution goes through.
+function pointsBetween(curve) {
+  const [times, values] = (curve.between ?? []).map((keys) => at(curve.of, keys) ?? []);
+  const room = times ? 1e-6 * (times[times.length - 1] - times[0]) : 0;
+  let next = 0;
+  return (from, to, add) => {
+    while (times && times[next] <= from + room) next += 1;
+    for (; times && times[next] < to - room; next += 1) add(times[next], values[next]);
+  };
+}
+
 /// The pieces of a curve between jumps and gaps: lists of times and of values.
 function pieces(curve, unit) {
   const time = at(curve.of, curve.time) ?? [];
@@ -49,7 +60,9 @@ function pieces(curve, unit) {
     piece.x.push(t / page.time.si);
     piece.y.push(value / unit.si);
   };
+  const fill = pointsBetween(curve);
   time.forEach((t, k) => {
+    if (k > 0) fill(time[k - 1], t, add);
     const value = curve.kind === "steps" ? values[Math.min(k, values.length - 1)] : values[k];
     if (before.has(k)) {
       add(t, before.get(k));

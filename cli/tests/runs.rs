@@ -22,6 +22,7 @@ fn a_simulation_has_a_page_with_its_events() {
     assert!(stdout(&output).contains("./bounce.sim.html"), "{}", stdout(&output));
     let page = page(&folder, "bounce.sim.html");
     assert!(page.contains("Simulated to the end, 2 events"));
+    assert!(page.contains("key-0\">simulation</span>"));
     let again = format!("<pre>fdcc simulate {} --out results", model("bounce"));
     assert!(page.contains(&again) && !page.contains("fdcc solve"));
     let drawn = drawing(&page);

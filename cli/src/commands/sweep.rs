@@ -197,7 +197,7 @@ impl Sweep {
         output::print(&match self.options.json {
             true => output::json(&summary),
             false => {
-                let page = without_page(journal.rows());
+                let page = page::too_many(journal.rows());
                 format!(" {}\n in {folder}, {seconds:.3} s\n{page}", words(&summary))
             }
         });
@@ -354,17 +354,6 @@ impl Sweep {
             let iterations = plural(document.iterations, "iteration");
             run.bar.suspend(|| output::tell(&format!("{line}  {iterations}\n")));
         }
-    }
-}
-
-/// Says that there are too many rows for a page, if there are.
-fn without_page(rows: usize) -> String {
-    let most = page::MOST;
-    match rows > most {
-        true => format!(
-            " no page: it has room for {most} rows; `fdcc merge` makes a table of them all\n"
-        ),
-        false => String::new(),
     }
 }
 

@@ -62,7 +62,7 @@ pub fn page(documents: &[Json], names: &[&str]) -> String {
     let body = [
         header(documents, names),
         of_each(documents, names, runs::first_tables),
-        tools(&drawing),
+        tools(&drawing, runs::curves(&documents[0])),
         pictures(&drawing),
         of_each(documents, names, estimates::estimates),
         convergence(documents, names),

@@ -154,6 +154,16 @@ fn located(document: &Json) -> String {
     )
 }
 
+/// What the curves of the only document are.
+pub fn curves(document: &Json) -> &'static str {
+    match of(document) {
+        Some(Run::Simulation) => "simulation",
+        Some(Run::ClosedLoop) => "plant",
+        Some(Run::Gradient) => "trajectory",
+        _ => "solution",
+    }
+}
+
 /// What a page is about, before all pictures: the derivatives.
 pub fn first_tables(document: &Json) -> String {
     match of(document) {

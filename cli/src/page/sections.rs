@@ -6,10 +6,11 @@ use super::json::Json;
 use super::plots::PLOTS;
 use super::tags::{escape, section};
 
-/// What stays in sight while reading: which line is which, the time at the cursor.
-pub fn tools(drawing: &Drawing) -> String {
+/// What stays in sight while reading: which line is which (`curves` of the only document), the time
+/// at the cursor.
+pub fn tools(drawing: &Drawing, curves: &str) -> String {
     let key = |(at, name): (usize, &String)| {
-        let name = if name.is_empty() { "solution" } else { name };
+        let name = if name.is_empty() { curves } else { name };
         format!("<span class=\"key key-{at}\">{}</span>\n", escape(name))
     };
     let mut keys: String = drawing.names.iter().enumerate().map(key).collect();

@@ -11,6 +11,16 @@ use crate::output::units::Units;
 
 /// A sweep with more rows has no page: nobody reads it, and it would be megabytes.
 pub const MOST: usize = 5_000;
+/// Says that there are too many rows for a page, if there are.
+pub fn too_many(rows: usize) -> String {
+    match rows > MOST {
+        true => format!(
+            " no page: it has room for {MOST} rows; `fdcc merge` makes a table of them all\n"
+        ),
+        false => String::new(),
+    }
+}
+
 /// More rows are not in the table.
 const MOST_LISTED: usize = 500;
 
@@ -343,6 +353,11 @@ mod tests {
         let product = [r#""mu":0.1,"N":50"#, r#""mu":0.2,"N":50"#, r#""mu":0.1,"N":80"#];
         assert!(!page(rows(&side), 2).contains("mu and N"));
         assert!(page(rows(&product), 3).contains("mu and N"));
+    }
+
+    #[test]
+    fn a_sweep_without_a_page_says_so() {
+        assert!(too_many(MOST).is_empty() && too_many(MOST + 1).contains("room for 5000 rows"));
     }
 
     /// A table of cases: neither a line, which says that what is between is known, nor a grid.

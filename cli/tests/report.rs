@@ -172,6 +172,8 @@ fn the_page_of_a_fit_has_its_data_and_its_estimates() {
     {
         assert!(page.markup().contains(told), "{told}: {}", page.markup());
     }
+    let estimates = page.text.find("<h2>Estimates</h2>").expect("a table");
+    assert!(estimates < page.text.find("<h2>States</h2>").expect("states"), "they come first");
     let x = &page.document["residuals"][0];
     let [data, deviation, value] =
         ["measured", "deviation", "values"].map(|key| number(&x[key][2]));

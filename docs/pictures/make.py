@@ -83,7 +83,7 @@ def main():
         # Some rows need more force than there is, which is exit code 2.
         subprocess.run([fdcc, *PRODUCT], capture_output=True, cwd=folder)
         [page] = (folder / "product").glob("*.html")
-        shoot(page, FOLDER / "product-1200.png", 1200, 620)
+        shoot(page, FOLDER / "product-1200.png", 1200, 920)
         dark = FOLDER / "block-dark.png"
         shoot(folder / "block.html", dark, 1200, 1000, *DARK)
     shoot_site()

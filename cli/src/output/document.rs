@@ -221,17 +221,10 @@ impl Document {
             units,
             convergence: Convergence::default(),
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
-            certificate: found
-                .certificate
-                .as_ref()
-                .map(|it| Certificate::new(it, is_smooth(found))),
+            certificate: certificate(found),
             verification: None,
             reach: None,
-            largest_violation: outcome
-                .limiting
-                .as_ref()
-                .filter(|_| solution.status == Status::Infeasible)
-                .map(LargestViolation::from),
+            largest_violation: largest_violation(found),
         }
     }
 
@@ -272,6 +265,17 @@ impl Document {
             .filter(move |jump| nearest(jump.time) == Some(point))
             .map(|jump| &jump.before)
     }
+}
+
+fn certificate(found: &Solution) -> Option<Certificate> {
+    found.certificate.as_ref().map(|it| Certificate::new(it, is_smooth(found)))
+}
+
+/// What is violated most, where nothing feasible was found.
+fn largest_violation(found: &Solution) -> Option<LargestViolation> {
+    let limiting = found.outcome.limiting.as_ref();
+    let is_infeasible = found.outcome.solution.status == Status::Infeasible;
+    limiting.filter(|_| is_infeasible).map(LargestViolation::from)
 }
 
 /// Where an expression has no value, no error was measured.

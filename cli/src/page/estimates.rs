@@ -81,7 +81,8 @@ fn fit(estimates: &Json) -> String {
     for group in estimates.at("undetermined").list() {
         let names: Vec<&str> = group.list().iter().map(Json::text).collect();
         text += &format!(
-            "<p><b class=\"open\">The data do not determine</b> {}: other values fit as well.</p>\n",
+            "<p><b class=\"open\">The data do not determine</b> {}: other values fit as \
+             well.</p>\n",
             escape(&names.join(", "))
         );
     }

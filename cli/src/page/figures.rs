@@ -378,7 +378,8 @@ mod tests {
     fn what_measures_something_else_has_an_axis_of_its_own() {
         let document = |units: &str| {
             let text = format!(
-                r#"{{"time":[0,1],"states":{{"x":[0,1]}},"costates":{{"x":[1,1]}},"units":{units}}}"#
+                r#"{{"time":[0,1],"states":{{"x":[0,1]}},"costates":{{"x":[1,1]}},
+                    "units":{units}}}"#
             );
             serde_json::from_str(&text).expect("it is JSON")
         };

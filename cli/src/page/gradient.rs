@@ -122,10 +122,13 @@ pub fn tables(document: &Json) -> String {
 
 fn derivatives(document: &Json) -> String {
     let (columns, all) = (columns(document), all_by(document));
+    let has_units = all.iter().any(|it| !it.unit.name.is_empty());
     let row = |it: &By| {
         let mut cells = vec![Cell::text(&it.label)];
         cells.extend(columns.iter().map(|(_, column)| Cell::Number(shown(column, it))));
-        cells.push(Cell::text(&it.unit.name));
+        if has_units {
+            cells.push(Cell::text(&it.unit.name));
+        }
         // Lengths of bars can be compared where derivatives have the same unit.
         let alike = all.iter().filter(|other| other.unit == it.unit);
         let most = alike.map(|other| other.exact.abs()).fold(0.0, f64::max);
@@ -134,7 +137,8 @@ fn derivatives(document: &Json) -> String {
     };
     let mut head = vec!["by"];
     head.extend(columns.iter().map(|(title, _)| title.as_str()));
-    head.extend(["unit", ""]);
+    head.extend(has_units.then_some("unit"));
+    head.push("");
     let rows: Vec<_> = all.iter().map(row).collect();
     table(&format!("Derivatives of {}", document.at("of").text()), &head, &rows)
 }

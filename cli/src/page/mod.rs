@@ -64,7 +64,6 @@ pub fn page(documents: &[Json], names: &[&str]) -> String {
         of_each(documents, names, runs::first_tables),
         tools(&drawing, runs::curves(&documents[0])),
         pictures(&drawing),
-        of_each(documents, names, estimates::estimates),
         convergence(documents, names),
         of_each(documents, names, tables::tables),
         data(documents, &drawing),

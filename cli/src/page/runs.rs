@@ -1,6 +1,7 @@
 //! What a page says of a run that is no solve: a simulation, a closed loop, a gradient, or the
 //! replay of a solution.
 
+use super::estimates::estimates;
 use super::headline::{Claim, Mark};
 use super::json::Json;
 use super::tags::{Cell, table};
@@ -164,11 +165,11 @@ pub fn curves(document: &Json) -> &'static str {
     }
 }
 
-/// What a page is about, before all pictures: the derivatives.
+/// What a page is about, before all pictures: derivatives, or the estimates of a fit.
 pub fn first_tables(document: &Json) -> String {
     match of(document) {
         Some(Run::Gradient) => gradient::tables(document),
-        _ => String::new(),
+        _ => estimates(document),
     }
 }
 

@@ -3,10 +3,12 @@
 //!
 //! | a signal | is constant where it moves by no more than |
 //! |---|---|
-//! | any | two steps of the seventh digit of its largest value: a page has no more digits |
-//! | with bounds or limits | 1e-9 of the largest of them: solutions hold to about 1e-8 of it |
-//! | without | 1e-16 of its declared unit, by which solvers measure it: lost in any sum with it |
-//! | a costate | 1e-9 of the largest one, each times the size of its state: what all states of that size change the objective by |
+//! | any | two steps of the seventh digit of its largest value: a page has no more |
+//! | with bounds | 1e-9 of the largest of them: solutions hold to about 1e-8 of it |
+//! | without | 1e-16 of its declared unit, by which solvers measure it: lost beside it |
+//! | a costate | 1e-9 of the largest one, each times the size of its state |
+//!
+//! A costate times the size of its state is a change of the objective: these can be compared.
 
 use super::figures::Limit;
 use super::json::Json;

@@ -231,8 +231,8 @@ fn text(document: &Json) -> String {
     )
 }
 
-/// What runs it again: the command that was given, or what leads to such a document where nothing is
-/// known of it.
+/// What runs it again: the command that was given, or what leads to such a document where nothing
+/// is known of it.
 fn again(document: &Json) -> String {
     let model = document.at("model").text();
     let usual = format!("{model}.fdc");

@@ -114,7 +114,8 @@ mod tests {
     fn document(confirmed: bool) -> Json {
         let text = format!(
             r#"{{"same_source":false,"objective":2,"verification":{{"confirmed":{confirmed},
-                "completed":true,"asked":0.001,"state_gap":0.02,"objective":3,"relative_violation":0,
+                "completed":true,"asked":0.001,"state_gap":0.02,"objective":3,
+                "relative_violation":0,
                 "differs":{{"state":"x","difference":0.003,"time":0.5}}}},
                 "display_units":{{"x":{{"unit":"mm","si":0.001}},
                 "end x == 1":{{"unit":"mm","si":0.001}}}},

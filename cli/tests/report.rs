@@ -193,6 +193,34 @@ fn the_page_of_a_fit_has_its_data_and_its_estimates() {
     assert_eq!(svg.matches("<circle").count(), 21, "{svg}");
 }
 
+/// Both are written in other ways: what was measured is found all the same.
+#[test]
+fn measurements_of_sums_and_of_deviations_that_are_formulas_are_found() {
+    let text = |what: &str| {
+        format!(
+            "model drift\ndata obs = csv(\"obs.csv\") columns t, x\nparam s = 0.1\n\
+             free v in [0, 5] guess 1\ntime t in [0, 2]\nstate x start 0\n\
+             dynamics {{ x' = v*s*10 }}\n{what}\n"
+        )
+    };
+    let residual = |test: &str, what: &str| {
+        let text = text(what);
+        let files: [(&str, &[u8]); 2] =
+            [("drift.fdc", text.as_bytes()), ("obs.csv", b"t,x\n0,0.3\n1,0.9\n2,2.5\n")];
+        page(test, &files, "drift", &[]).document["residuals"][0].clone()
+    };
+    let third = |it: &Value, key: &str| number(&it[key][2]);
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
+    let fit = residual("page_formula", "fit obs: x sd s + 0.1*abs(obs.x)");
+    near(third(&fit, "measured"), 2.5);
+    near(third(&fit, "deviation"), 0.35);
+    let sum = residual("page_sum", "minimize sum(k in obs, 4*(2*k.x - x(k.t))^2)");
+    near(third(&sum, "measured"), 5.0);
+    near(third(&sum, "deviation"), 0.5);
+    // v is the sum of t*2x over that of t^2: 11.8/5, so that x(2) is 4.72, 0.28 below.
+    near(third(&sum, "values"), -0.56);
+}
+
 #[test]
 fn names_of_a_model_and_its_text_are_no_markup() {
     let text = "model odd # </script><b>&\ntime t in [0, 1]\nstate x start 0\n\

@@ -239,6 +239,11 @@ mod tests {
         assert!(near(of(&[0.0, 1.0], &[1.5, 9.0]), [-0.09, 1.59]));
         assert!(near(of(&[], &[]), [-1.0, 1.0]));
         assert!(near(of(&[1e-33, -1e-35], &[]), [-1.12, 1.12]), "rounding beside what counts");
+        let script = include_str!("assets/data.js");
+        for rule in [format!("{OF_OWN:e} * size"), format!("{NEAR} * width"), format!("{MARGIN} *")]
+        {
+            assert!(script.contains(&rule), "the scripts have another rule than {rule}");
+        }
         let costate = of(&[-32.978415, -32.978377], &[]);
         assert!(costate[1] - costate[0] > 30.0, "rounding of a page: {costate:?}");
     }

@@ -14,7 +14,7 @@
 //! parameter estimation, 1974, chapter 7.)
 
 use crate::{Phases, Solution};
-use fdcc_compiler::{Model, Readings, residuals};
+use fdcc_compiler::{Model, Readings, Residuals, residuals};
 use fdcc_runtime::nlp::Covariance;
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solution::terms_of_rows;
@@ -266,10 +266,15 @@ fn of_phase(
         name: own(&it.name),
         data: it.data.clone(),
         time: terms.iter().map(|(row, _)| it.rows.times[*row]).collect(),
-        values: terms.iter().map(|(row, term)| term * it.weights[*row]).collect(),
+        values: terms.iter().map(|(row, term)| term * it.weights[*row] * sign(it, *row)).collect(),
         is_measured: terms.iter().map(|(row, _)| it.weights[*row] > 0.0).collect(),
     });
     (of_signal.collect(), is_known)
+}
+
+/// A square may be written as that of the measurement less the signal.
+fn sign(residuals: &Residuals, row: usize) -> f64 {
+    residuals.readings.as_ref().map_or(1.0, |it| it.factors[row].signum())
 }
 
 /// By how much each measurement is off where its residual is 1.

@@ -2,6 +2,7 @@
 //! ends in other languages.
 
 mod answers;
+mod command;
 mod commands;
 mod drawing;
 mod exit;
@@ -34,6 +35,7 @@ struct CommandLine {
 
 /// Reads the command line and hands over to one file for each command.
 pub fn run() -> ExitCode {
+    command::remember(std::env::args_os().skip(1).map(|it| it.to_string_lossy().into_owned()));
     match CommandLine::try_parse() {
         Ok(line) => output::ended(line.command.run()).into(),
         Err(error) if error.use_stderr() => {

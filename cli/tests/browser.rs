@@ -99,6 +99,11 @@ fn pages_are_drawn_without_complaints_and_fit_every_width() {
     look(browser, &folder.join("both.html"));
     expect_exit(&fdcc(&folder, &["simulate", &models[1], "--out", "."], ""), 0, "simulate");
     look(browser, &folder.join("bounce.sim.html"));
+    expect_exit(&fdcc(&folder, &["grad", &model("crossing"), "--out", "."], ""), 0, "grad");
+    look(browser, &folder.join("crossing.grad.html"));
+    let verify = ["verify", "block.sol.json", &models[0], "--out", "."];
+    expect_exit(&fdcc(&folder, &verify, ""), 0, "verify");
+    look(browser, &folder.join("block.verify.html"));
     expect_exit(&fdcc(&folder, &["mpc", "ramp.fdc", "--steps", "3", "--out", "."], ""), 0, "mpc");
     look(browser, &folder.join("ramp.mpc.html"));
 }

@@ -99,3 +99,15 @@ fn what_is_proved_keeps_its_words() {
         assert!(stderr(&output).contains("this is certain"), "{solver}");
     }
 }
+
+/// With |u| <= 4 the ramp comes to 4 and no further.
+#[test]
+fn the_page_tells_how_near_it_comes_and_where_it_is_off() {
+    let folder = folder("near_page", &[("ramp.fdc", RAMP.as_bytes())]);
+    let solve = ["solve", "ramp.fdc", "--set", "goal=5", "--out", ".", "--log", "none"];
+    expect_exit(&fdcc(&folder, &solve, ""), 2, "too far");
+    let page = std::fs::read_to_string(folder.join("ramp.html")).expect("it was written");
+    let near = "comes to 4 instead of 5 (proved: no more is possible on this grid).";
+    assert!(page.contains("With all else met, “") && page.contains(near), "{page}");
+    assert!(page.contains("The largest violation is that of"), "{page}");
+}

@@ -2,12 +2,13 @@
 
 use crate::common::*;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// A page, and the document that it draws.
 struct Page {
     text: String,
     document: Value,
+    path: PathBuf,
 }
 
 /// Solves a model with some options.
@@ -25,7 +26,7 @@ fn read(path: &Path) -> Page {
     let document = text.split("id=\"solution-0\">").nth(1).expect("the page has its document");
     let document = document.split("</script>").next().expect("it ends");
     let document = serde_json::from_str(document).expect("it is JSON");
-    Page { text, document }
+    Page { text, document, path: path.to_owned() }
 }
 
 /// What stands between the tags of a page but for scripts and styles.
@@ -149,6 +150,77 @@ fn the_page_of_the_race_car_has_its_replay_and_is_small() {
     assert!(number(&page.document["convergence"]["N"][0]) == 125.0);
 }
 
+/// The page runs what was run, not what the model would be without its options.
+#[test]
+fn the_page_says_how_it_is_run_again() {
+    let text = RAMP.replace("model ramp", "model odd");
+    let files: [(&str, &[u8]); 1] = [("odd.fdc", text.as_bytes())];
+    let page = page("page_again", &files, "odd", &["--set", "goal=0.5", "--method", "N=12"]);
+    let again = "<pre>fdcc solve odd.fdc --set goal=0.5 --method N=12 --out results\n\
+                 fdcc verify results/odd.sol.json odd.fdc</pre>";
+    assert!(page.markup().contains(again), "{}", page.markup());
+    let command = &page.document["command"];
+    let given = ["solve", "odd.fdc", "--set", "goal=0.5", "--method", "N=12"];
+    assert_eq!(*command, serde_json::json!(given));
+}
+
+/// What was measured, over the curve of the model; what remains; what the estimates are worth.
+#[test]
+fn the_page_of_a_fit_has_its_data_and_its_estimates() {
+    let page = page("page_fit", &[], "slider_fit", &[]);
+    for told in ["<h2>Estimates</h2>", "0.3022114", "± 0.00136", "-0.9987", "key-points\">measured"]
+    {
+        assert!(page.markup().contains(told), "{told}: {}", page.markup());
+    }
+    let estimates = page.text.find("<h2>Estimates</h2>").expect("a table");
+    assert!(estimates < page.text.find("<h2>States</h2>").expect("states"), "they come first");
+    let x = &page.document["residuals"][0];
+    let [data, deviation, value] =
+        ["measured", "deviation", "values"].map(|key| number(&x[key][2]));
+    // The third row of slider.csv.
+    assert_eq!([data, deviation], [0.1246, 0.01]);
+    let time = page.document["time"].as_array().expect("times");
+    let at = time.iter().position(|it| number(it) >= 0.4).expect("the row is within");
+    let model = number(&page.document["states"]["x"][at]);
+    assert!((model - (data + value * deviation)).abs() < 2e-3, "{model}");
+    let drawn = page.text.split("id=\"page\">").nth(1).expect("what is drawn");
+    assert!(drawn.contains("\"kind\":\"points\"") && drawn.contains("\"kind\":\"stems\""));
+    let svg = page.path.with_file_name("x.svg");
+    let plot = ["plot", "slider_fit.sol.json", "--signal", "x", "--out", "x.svg"];
+    let folder = page.path.parent().expect("a folder");
+    expect_exit(&fdcc(folder, &plot, ""), 0, "plot");
+    let svg = std::fs::read_to_string(svg).expect("it was written");
+    assert_eq!(svg.matches("<circle").count(), 21, "{svg}");
+}
+
+/// Both are written in other ways: what was measured is found all the same.
+#[test]
+fn measurements_of_sums_and_of_deviations_that_are_formulas_are_found() {
+    let text = |what: &str| {
+        format!(
+            "model drift\ndata obs = csv(\"obs.csv\") columns t, x\nparam s = 0.1\n\
+             free v in [0, 5] guess 1\ntime t in [0, 2]\nstate x start 0\n\
+             dynamics {{ x' = v*s*10 }}\n{what}\n"
+        )
+    };
+    let residual = |test: &str, what: &str| {
+        let text = text(what);
+        let files: [(&str, &[u8]); 2] =
+            [("drift.fdc", text.as_bytes()), ("obs.csv", b"t,x\n0,0.3\n1,0.9\n2,2.5\n")];
+        page(test, &files, "drift", &[]).document["residuals"][0].clone()
+    };
+    let third = |it: &Value, key: &str| number(&it[key][2]);
+    let near = |a: f64, b: f64| assert!((a - b).abs() < 1e-6, "{a} is not {b}");
+    let fit = residual("page_formula", "fit obs: x sd s + 0.1*abs(obs.x)");
+    near(third(&fit, "measured"), 2.5);
+    near(third(&fit, "deviation"), 0.35);
+    let sum = residual("page_sum", "minimize sum(k in obs, 4*(2*k.x - x(k.t))^2)");
+    near(third(&sum, "measured"), 5.0);
+    near(third(&sum, "deviation"), 0.5);
+    // v is the sum of t*2x over that of t^2: 11.8/5, so that x(2) is 4.72, 0.28 below.
+    near(third(&sum, "values"), -0.56);
+}
+
 #[test]
 fn names_of_a_model_and_its_text_are_no_markup() {
     let text = "model odd # </script><b>&\ntime t in [0, 1]\nstate x start 0\n\
@@ -158,7 +230,7 @@ fn names_of_a_model_and_its_text_are_no_markup() {
     assert_eq!(page.document["source"].as_str(), Some(text));
 }
 
-fn solutions(test: &str) -> std::path::PathBuf {
+fn solutions(test: &str) -> PathBuf {
     let folder = folder(test, &[("ramp.fdc", RAMP.as_bytes())]);
     let sweep =
         ["sweep", "ramp.fdc", "goal=1,2", "--out", "all", "--trajectories", "--log", "none"];
@@ -177,6 +249,10 @@ fn several_solutions_stand_side_by_side() {
     assert_eq!(page.text.matches("<h1 ").count(), 2);
     assert!(page.text.contains("<dt>goal</dt><dd>2</dd>"), "what differs is told");
     assert!(page.text.contains("key-0\">ramp.1") && page.text.contains("key-1\">ramp.2"));
+    for name in ["ramp.1", "ramp.2"] {
+        let heading = format!("<h2>How it was solved <span class=\"of\">{name}</span></h2>");
+        assert!(page.text.contains(&heading), "{heading}");
+    }
     let drawn = page.text.split("id=\"page\">").nth(1).expect("what is drawn");
     let drawn: Value = serde_json::from_str(drawn.split("</script>").next().expect("it ends"))
         .expect("it is JSON");

@@ -22,12 +22,56 @@ fn a_simulation_has_a_page_with_its_events() {
     assert!(stdout(&output).contains("./bounce.sim.html"), "{}", stdout(&output));
     let page = page(&folder, "bounce.sim.html");
     assert!(page.contains("Simulated to the end, 2 events"));
-    assert!(page.contains("fdcc simulate bounce.fdc") && !page.contains("fdcc solve"));
+    assert!(page.contains("key-0\">simulation</span>"));
+    let again = format!("<pre>fdcc simulate {} --out results", model("bounce"));
+    assert!(page.contains(&again) && !page.contains("fdcc solve"));
     let drawn = drawing(&page);
     let marks: Vec<f64> =
         drawn["marks"].as_array().expect("marks").iter().map(|it| number(&it["time"])).collect();
     // Falls from 1.5 m without a speed: sqrt(2*1.5/g).
     assert!(marks.len() == 2 && (marks[0] - (3.0f64 / 9.81).sqrt()).abs() < 1e-6, "{marks:?}");
+}
+
+/// The derivatives come first; `fdcc report` makes the same page of the document.
+#[test]
+fn a_gradient_has_a_page_with_its_derivatives() {
+    let folder = folder("gradient_page", &[]);
+    let output = fdcc(&folder, &["grad", &model("crossing"), "--out", "."], "");
+    expect_exit(&output, 0, "grad");
+    assert!(stdout(&output).contains("./crossing.grad.html"), "{}", stdout(&output));
+    let text = page(&folder, "crossing.grad.html");
+    assert!(text.contains("Exact gradient of objective: it can be trusted"));
+    let table = text.find("<h2>Derivatives of objective</h2>").expect("a table");
+    assert!(table < text.find("<h2>States</h2>").expect("the trajectory"));
+    assert!(text.contains(">discretised (") && text.contains("<h2>Events</h2>"));
+    assert!(text.contains("class=\"open\">? open</b><span>The discretised gradient is off by"));
+    assert_eq!(drawing(&text)["figures"][0]["name"], "x");
+    let report = ["report", "crossing.grad.json", "--out", "again.html"];
+    expect_exit(&fdcc(&folder, &report, ""), 0, "report");
+    assert!(page(&folder, "again.html").contains("<h2>Derivatives of objective</h2>"));
+}
+
+/// The replay beside the plan, and what differs; also of phases.
+#[test]
+fn a_verification_has_a_page_with_the_replay() {
+    let folder = folder("verified_page", &[("ramp.fdc", RAMP.as_bytes())]);
+    let hop = format!("{}/../models/twostage.fdc", env!("CARGO_MANIFEST_DIR"));
+    for (name, file) in [("ramp", "ramp.fdc"), ("twostage", &hop)] {
+        expect_exit(&fdcc(&folder, &["solve", file, "--out", ".", "--log", "none"], ""), 0, name);
+        let verify = ["verify", &format!("{name}.sol.json"), file, "--out", "."];
+        let output = fdcc(&folder, &verify, "");
+        expect_exit(&output, 0, name);
+        assert!(stdout(&output).contains(&format!("./{name}.verify.html")), "{}", stdout(&output));
+        let text = page(&folder, &format!("{name}.verify.html"));
+        assert!(
+            text.contains("<h1 class=\"certain\">The solution is confirmed on the true system")
+        );
+        assert!(text.contains("<h2>Replay less solution"), "{name}");
+        let figures = drawing(&text)["figures"].clone();
+        assert_eq!(figures[0]["curves"][1]["kind"], "replay", "{name}");
+        let report = ["report", &format!("{name}.verify.json"), "--out", "again.html"];
+        expect_exit(&fdcc(&folder, &report, ""), 0, "report");
+    }
 }
 
 /// It goes to 1, in ten steps of 0.1.
@@ -44,12 +88,13 @@ method { N = 10 scheme = implicit_euler }
 #[test]
 fn a_closed_loop_writes_a_page_and_a_table() {
     let folder = folder("loop_page", &[("follow.fdc", LOOP.as_bytes())]);
-    let output = fdcc(&folder, &["mpc", "follow.fdc", "--steps", "7", "--out", "run"], "");
+    let mpc = ["mpc", "follow.fdc", "--steps", "7", "--method", "tol=1e-7", "--out", "run"];
+    let output = fdcc(&folder, &mpc, "");
     expect_exit(&output, 0, "mpc");
     assert!(stdout(&output).contains(" wrote run/follow.mpc.json"), "{}", stdout(&output));
     let page = page(&folder, "run/follow.mpc.html");
     assert!(page.contains("In closed loop: 7 steps, all are solved"));
-    assert!(page.contains("fdcc mpc follow.fdc --steps 7"));
+    assert!(page.contains("fdcc mpc follow.fdc --steps 7 --method tol=1e-7 --out results</pre>"));
     let drawn = drawing(&page);
     let names: Vec<&str> = drawn["figures"]
         .as_array()
@@ -78,6 +123,7 @@ fn a_sweep_has_a_picture_that_marks_what_failed() {
     expect_exit(&output, 2, "one row is infeasible");
     let page = sweep_page(&folder.join("runs"));
     assert!(page.contains("2 of 3 rows can be used, 1 not solved"), "{page}");
+    assert!(page.contains("<pre>fdcc sweep ramp.fdc goal=1,3,5 --out results</pre>"), "{page}");
     assert_eq!(page.matches("<svg").count(), 1);
     let arguments = ["sweep", "ramp.fdc", "goal=1,2", "N=4,8", "--product", "--out", "grid"];
     expect_exit(&fdcc(&folder, &arguments, ""), 0, "a product");

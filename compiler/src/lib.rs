@@ -31,7 +31,7 @@ pub use compile::chain::{
 };
 pub use compile::dump::{Stage, dump};
 pub use compile::emit::emit_c;
-pub use compile::residuals::{Residuals, residuals};
+pub use compile::residuals::{Readings, Residuals, residuals};
 pub use compile::{Expectations, expectations};
 pub use compile::{ProblemCode, compile, compile_by_parameters};
 pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};

@@ -75,13 +75,15 @@ def main():
                 shoot(folder / f"{name}.html", picture, width, height)
         run("solve", str(ROOT / "models" / "racecar.fdc"), "--out", "certified", "--log", "none")
         shoot(folder / "certified" / "racecar.html", FOLDER / "course-1200.png", 1200, 1500)
+        run("grad", str(ROOT / "models" / "crossing.fdc"), "--out", ".")
+        shoot(folder / "crossing.grad.html", FOLDER / "grad-1200.png", 1200, 900)
         (folder / "follow.fdc").write_text(FOLLOW)
         run("mpc", "follow.fdc", "--steps", "60", "--out", ".")
         shoot(folder / "block.mpc.html", FOLDER / "mpc-1200.png", 1200, 820)
         # Some rows need more force than there is, which is exit code 2.
         subprocess.run([fdcc, *PRODUCT], capture_output=True, cwd=folder)
         [page] = (folder / "product").glob("*.html")
-        shoot(page, FOLDER / "product-1200.png", 1200, 620)
+        shoot(page, FOLDER / "product-1200.png", 1200, 920)
         dark = FOLDER / "block-dark.png"
         shoot(folder / "block.html", dark, 1200, 1000, *DARK)
     shoot_site()

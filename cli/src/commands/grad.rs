@@ -7,6 +7,7 @@ use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::gradient::GradientDocument;
 use crate::output::{self, files};
+use crate::page;
 use clap::Args;
 use fdcc::{By, Controls, Gradient, Model, NotBy, by_names};
 use fdcc_grammar::{Severity, SourceFile};
@@ -32,7 +33,7 @@ pub struct Grad {
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]
     json: bool,
-    /// Write MODEL.grad.json to this folder
+    /// Write MODEL.grad.json and MODEL.grad.html to this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
@@ -81,6 +82,7 @@ impl Grad {
         let gradient = Gradient::new(&model, system, controls, by, &accuracy);
         let of = self.of.as_deref().unwrap_or("objective");
         let document = GradientDocument::new(of, &gradient, has_second, &model);
+        let document = document.with_trajectory(&gradient, model.source());
         Ok(document.in_units((&model).into()))
     }
 
@@ -108,7 +110,10 @@ impl Grad {
         let exit = if document.trusted { Exit::Fine } else { Exit::NotSolved };
         let written = match &self.out {
             Some(folder) => {
-                files::write_all(folder, &document.model, &[("grad.json", output::json(document))])
+                let json = output::json(document);
+                let page = page::of(&json);
+                let all = [("grad.json", json), ("grad.html", page)];
+                files::write_all(folder, &document.model, &all)
             }
             None => Ok(Vec::new()),
         };

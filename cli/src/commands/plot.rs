@@ -17,8 +17,8 @@ pub struct Plot {
     #[arg(value_name = "SOLUTION")]
     solution: PathBuf,
     /// What to draw: a state, a control, a path condition, a report, a `plot` of the model,
-    /// `costate(x)`, `multiplier(c)` or `hamiltonian`; repeatable; all states and controls if left
-    /// out
+    /// `costate(x)`, `multiplier(c)`, `residual(x)` or `hamiltonian`; repeatable; all states and
+    /// controls if left out
     #[arg(long, value_name = "NAME")]
     signal: Vec<String>,
     /// Draw it over this signal instead of over the time

@@ -4,6 +4,7 @@
 use super::options::{Gap, Options, prepare};
 use super::solver::{document, sha256, warm, wrong_start};
 use super::written;
+use crate::command;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::input;
@@ -195,7 +196,10 @@ impl Sweep {
         let folder = folder_of(&self.options).display();
         output::print(&match self.options.json {
             true => output::json(&summary),
-            false => format!(" {}\n in {folder}, {seconds:.3} s\n", words(&summary)),
+            false => {
+                let page = page::too_many(journal.rows());
+                format!(" {}\n in {folder}, {seconds:.3} s\n{page}", words(&summary))
+            }
         });
         Ok(if tally.fine == expected { Exit::Fine } else { Exit::NotSolved })
     }
@@ -212,7 +216,8 @@ impl Sweep {
         let params: Vec<String> =
             model.meaning().params.iter().map(|it| it.place.name.clone()).collect();
         let (units, params) = (&units, params.as_slice());
-        let page = page::Page { model: model.name(), source, units, params, rows, all };
+        let (model, command) = (model.name(), command::given());
+        let page = page::Page { model, source, command, units, params, rows, all };
         files::write_file(&folder.join(format!("{}.html", journal.name())), page.html())
     }
 

@@ -1,12 +1,13 @@
 //! `fdcc verify`: what the controls of a solution do on the true system.
 
 use super::options::{Changes, Gap, read};
-use super::solver::sha256;
+use super::solver::{sha256, wrote};
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output;
 use crate::output::saved::Saved;
 use crate::output::verified::{VerifyDocument, VerifyPhasesDocument};
+use crate::output::{self, files};
+use crate::page;
 use clap::Args;
 use fdcc::{Error, Model};
 use fdcc_grammar::SourceFile;
@@ -26,6 +27,9 @@ pub struct Verify {
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]
     json: bool,
+    /// Write MODEL.verify.json and MODEL.verify.html to this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 impl Verify {
@@ -43,7 +47,7 @@ impl Verify {
             Err(exit) => return exit,
         };
         match self.verify(&saved, &model) {
-            Ok(document) => self.report(&document),
+            Ok(document) => self.report(&document, &model),
             Err(failure) => failure.report(model.source()),
         }
     }
@@ -84,7 +88,8 @@ impl Verify {
         let verified = solved.verify(&saved.record()).map_err(|it| self.failed(it))?;
         let gap = self.gap.of(&model.meaning().method);
         let document = VerifyDocument::new(&verified, saved.objective(), source, same_source, gap);
-        Ok(Document::One(document.in_units(model.into())))
+        let document = document.in_units(model.into());
+        Ok(Document::One(document.of_solution(&saved.record(), &source.text)))
     }
 
     fn verify_phases(
@@ -104,7 +109,7 @@ impl Verify {
         let name = &model.meaning().name;
         let document =
             VerifyPhasesDocument::new((phases, &links), name, saved.objective(), same_source, gap);
-        Ok(document.in_units(model.into()))
+        Ok(document.in_units(model.into()).of_solution(&record, &model.source().text))
     }
 
     fn failed(&self, error: Error) -> Failure {
@@ -114,15 +119,22 @@ impl Verify {
         }
     }
 
-    fn report(&self, document: &Document) -> Exit {
-        let (text, is_confirmed) = match document {
-            Document::One(it) if self.json => (output::json(it), it.is_confirmed()),
-            Document::One(it) => (it.words(), it.is_confirmed()),
-            Document::Phases(it) if self.json => (output::json(it), it.is_confirmed()),
-            Document::Phases(it) => (it.words(), it.is_confirmed()),
+    fn report(&self, document: &Document, model: &Model) -> Exit {
+        let (json, words, is_confirmed) = match document {
+            Document::One(it) => (output::json(it), it.words(), it.is_confirmed()),
+            Document::Phases(it) => (output::json(it), it.words(), it.is_confirmed()),
         };
-        output::print(&text);
-        if is_confirmed { Exit::Fine } else { Exit::NotSolved }
+        let written = match &self.out {
+            Some(folder) => {
+                let page = page::of(&json);
+                let all = [("verify.json", json.clone()), ("verify.html", page)];
+                files::write_all(folder, model.name(), &all)
+            }
+            None => Ok(Vec::new()),
+        };
+        output::print(if self.json { &json } else { &words });
+        let exit = if is_confirmed { Exit::Fine } else { Exit::NotSolved };
+        wrote(written, self.json, exit, model.source())
     }
 }
 

@@ -4,6 +4,7 @@ use super::named::Named;
 use super::number::significant;
 use super::plural;
 use super::units::{Shown, Units};
+use crate::command;
 use crate::version::VERSION;
 use fdcc::Controller;
 use serde::Serialize;
@@ -13,6 +14,9 @@ use serde::Serialize;
 pub struct ClosedLoopDocument {
     fdcc: &'static str,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     plant: String,
     /// `completed`, or why it ended early.
     ended: &'static str,
@@ -51,6 +55,7 @@ impl ClosedLoopDocument {
         ClosedLoopDocument {
             fdcc: VERSION,
             model: controller.model().name().to_owned(),
+            command: command::given(),
             plant: plant.to_owned(),
             ended: "completed",
             time: Vec::new(),

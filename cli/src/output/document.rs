@@ -10,10 +10,11 @@ use super::named::Named;
 use super::optimality::Optimality;
 use super::phases::Phase;
 use super::picture::Picture;
-use super::reach::Reach;
+use super::reach::{LargestViolation, Reach};
 use super::tried::{Ended, Family, Happened, Tried};
 use super::units::Units;
 use super::verification::Verification;
+use crate::command;
 use crate::version::VERSION;
 use fdcc::Solution;
 use fdcc_runtime::nlp::{self, Status};
@@ -26,6 +27,9 @@ use serde::{Deserialize, Serialize};
 pub struct Document {
     pub fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub command: Vec<String>,
     pub source_sha256: String,
     pub status: String,
     pub objective: f64,
@@ -114,6 +118,9 @@ pub struct Document {
     /// How far the condition in the way can be met; only where nothing feasible was found.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reach: Option<Reach>,
+    /// What is violated most; only where nothing feasible was found.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub largest_violation: Option<LargestViolation>,
 }
 
 /// The values between which a control is linear, or through which it is a polynomial on each
@@ -174,6 +181,7 @@ impl Document {
         Document {
             fdcc: VERSION.to_string(),
             model: problem.name.clone(),
+            command: command::given(),
             source_sha256: source_sha256.to_string(),
             status: found.status_name().to_string(),
             objective: found.objective(),
@@ -213,12 +221,10 @@ impl Document {
             units,
             convergence: Convergence::default(),
             optimality: claims.then(|| Optimality::new(&found.optimality(None))),
-            certificate: found
-                .certificate
-                .as_ref()
-                .map(|it| Certificate::new(it, is_smooth(found))),
+            certificate: certificate(found),
             verification: None,
             reach: None,
+            largest_violation: largest_violation(found),
         }
     }
 
@@ -259,6 +265,17 @@ impl Document {
             .filter(move |jump| nearest(jump.time) == Some(point))
             .map(|jump| &jump.before)
     }
+}
+
+fn certificate(found: &Solution) -> Option<Certificate> {
+    found.certificate.as_ref().map(|it| Certificate::new(it, is_smooth(found)))
+}
+
+/// What is violated most, where nothing feasible was found.
+fn largest_violation(found: &Solution) -> Option<LargestViolation> {
+    let limiting = found.outcome.limiting.as_ref();
+    let is_infeasible = found.outcome.solution.status == Status::Infeasible;
+    limiting.filter(|_| is_infeasible).map(LargestViolation::from)
 }
 
 /// Where an expression has no value, no error was measured.

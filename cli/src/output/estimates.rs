@@ -44,6 +44,12 @@ pub struct Residual {
     pub time: Vec<f64>,
     /// Signal less measurement, times the root of the weight; `null` where nothing was measured.
     pub values: Vec<Option<f64>>,
+    /// What was measured; absent where the sum is not of differences to a signal.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub measured: Option<Vec<Option<f64>>>,
+    /// The difference of which a residual is 1: the standard deviation, where the model gives one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<Vec<Option<f64>>>,
 }
 
 impl Document {
@@ -143,13 +149,18 @@ fn undetermined(names: &[String]) -> String {
 
 impl Residual {
     fn new(it: &fdcc::Residual) -> Self {
-        let values = it.values.iter().zip(&it.is_measured);
+        let of_measured = |all: &[f64]| -> Vec<Option<f64>> {
+            let all = all.iter().zip(&it.is_measured);
+            all.map(|(value, is_measured)| is_measured.then_some(*value)).collect()
+        };
         Residual {
             phase: it.phase.clone(),
             signal: it.name.clone(),
             data: it.data.clone(),
             time: it.time.clone(),
-            values: values.map(|(value, is_measured)| is_measured.then_some(*value)).collect(),
+            values: of_measured(&it.values),
+            measured: it.measured.as_deref().map(of_measured),
+            deviation: it.deviations.as_deref().map(of_measured),
         }
     }
 

@@ -3,7 +3,8 @@
 use super::ending::{Ending, EventEntry, events};
 use super::named::Named;
 use super::number::{scientific, significant};
-use super::units::Units;
+use super::units::{Shown, Units};
+use crate::command;
 use crate::version::VERSION;
 use fdcc::{By, Exact, Gradient, Model, Stepped};
 use fdcc_grammar::SourceFile;
@@ -17,6 +18,9 @@ use serde::Serialize;
 pub struct GradientDocument {
     fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     pub of: String,
     #[serde(flatten)]
     pub ending: Ending,
@@ -48,6 +52,19 @@ pub struct GradientDocument {
     /// The units of names, not of derivatives.
     #[serde(skip_serializing_if = "Units::is_empty")]
     pub units: Units,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    display_units: Named<Shown>,
+    #[serde(flatten)]
+    trajectory: Option<Trajectory>,
+}
+
+/// What is differentiated, for its picture.
+#[derive(Serialize)]
+struct Trajectory {
+    time: Vec<f64>,
+    states: Named<Vec<f64>>,
+    /// The text of the model.
+    source: String,
 }
 
 /// A number, or one for each row of a control.
@@ -153,7 +170,24 @@ impl GradientDocument {
 
     /// The same with the units of its values.
     pub fn in_units(self, units: Units) -> Self {
-        GradientDocument { units, ..self }
+        let display_units = units.shown();
+        GradientDocument { units, display_units, ..self }
+    }
+
+    /// The same with the trajectory.
+    pub fn with_trajectory(self, found: &Gradient, source: &SourceFile) -> Self {
+        let simulation = match &found.found {
+            Ok(exact) => &exact.found.simulation,
+            Err(simulation) => simulation,
+        };
+        let states = found.system.states.iter().zip(&simulation.states);
+        let states = states.filter(|(state, _)| !state.hidden);
+        let trajectory = Some(Trajectory {
+            time: simulation.time.clone(),
+            states: states.map(|(it, column)| (it.name.clone(), column.clone())).collect(),
+            source: source.text.to_string(),
+        });
+        GradientDocument { trajectory, ..self }
     }
 
     /// No gradient: the simulation does not reach the end.
@@ -161,6 +195,7 @@ impl GradientDocument {
         GradientDocument {
             fdcc: VERSION.to_string(),
             model: system.name.clone(),
+            command: command::given(),
             of: of.to_string(),
             ending: Ending::new(system, simulation, source),
             value: None,
@@ -179,6 +214,8 @@ impl GradientDocument {
             events: events(system, simulation),
             warnings: Vec::new(),
             units: Units::default(),
+            display_units: Named::default(),
+            trajectory: None,
         }
     }
 }

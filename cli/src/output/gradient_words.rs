@@ -149,7 +149,7 @@ impl GradientDocument {
 }
 
 /// The name whose unit counts: of `x(start)` that is `x`, of `u[3]` it is `u`.
-fn own(name: &str) -> &str {
+pub fn own(name: &str) -> &str {
     let name = name.strip_suffix("(start)").unwrap_or(name);
     let row = name.strip_suffix(']').and_then(|it| it.rsplit_once('['));
     row.filter(|(_, row)| row.bytes().all(|it| it.is_ascii_digit())).map_or(name, |it| it.0)

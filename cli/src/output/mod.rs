@@ -11,7 +11,7 @@ pub mod ending;
 pub mod estimates;
 pub mod files;
 pub mod gradient;
-mod gradient_words;
+pub mod gradient_words;
 pub mod hamiltonian_check;
 pub mod manual;
 mod method_used;

@@ -1,7 +1,35 @@
 //! How far a condition can be met where nothing feasible was found, as data and in words.
 
 use super::units::Units;
+use fdcc_runtime::solve::Limiting;
 use serde::Serialize;
+
+/// Where what was found without being feasible is off most.
+#[derive(Clone, Debug, Serialize)]
+pub struct LargestViolation {
+    /// The equation or the condition that is violated.
+    pub of: String,
+    /// The condition that stands against the equations most, if `of` is an equation.
+    pub condition: Option<String>,
+    /// In SI; of an equation in one step.
+    pub violation: f64,
+    /// Of an equation the sum over all steps.
+    pub in_all: f64,
+    /// Nothing where it is at no single time.
+    pub time: Option<f64>,
+}
+
+impl From<&Limiting> for LargestViolation {
+    fn from(it: &Limiting) -> Self {
+        LargestViolation {
+            of: it.origin.label.to_string(),
+            condition: it.condition.as_ref().map(|it| it.label.to_string()),
+            violation: it.violation,
+            in_all: it.in_all,
+            time: it.time,
+        }
+    }
+}
 
 /// The condition that stands in the way, and its best value with all others met.
 #[derive(Clone, Debug, Serialize)]

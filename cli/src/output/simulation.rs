@@ -4,6 +4,7 @@ use super::ending::{Ending, EventEntry, events, state};
 use super::named::Named;
 use super::plots::{Drawn, drawn};
 use super::units::{Shown, Units};
+use crate::command;
 use crate::version::VERSION;
 use fdcc::{Model, Simulation};
 use fdcc_grammar::SourceFile;
@@ -15,6 +16,9 @@ use std::fmt::Write;
 pub struct SimulationDocument {
     fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     #[serde(flatten)]
     run: RunEntry,
     #[serde(skip_serializing_if = "Units::is_empty")]
@@ -67,6 +71,7 @@ impl SimulationDocument {
         SimulationDocument {
             fdcc: VERSION.to_string(),
             model: simulated.system.name.clone(),
+            command: command::given(),
             run: RunEntry::new(simulated, model.source()),
             display_units: Units::from(model).shown(),
             plots: drawn(simulated.plots(model)),

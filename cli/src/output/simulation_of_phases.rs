@@ -4,6 +4,7 @@ use super::ending::Ending;
 use super::named::Named;
 use super::simulation::{Counts, RunEntry};
 use super::units::{Shown, Units};
+use crate::command;
 use crate::version::VERSION;
 use fdcc::{Model, SimulationOfPhases};
 use serde::Serialize;
@@ -13,6 +14,9 @@ use serde::Serialize;
 pub struct PhasesDocument {
     fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent where there is no command line.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     /// How the last phase ended that was simulated.
     #[serde(flatten)]
     ending: Ending,
@@ -38,6 +42,7 @@ impl PhasesDocument {
         PhasesDocument {
             fdcc: VERSION.to_string(),
             model: model.name().to_owned(),
+            command: command::given(),
             ending: last.ending.clone(),
             counts: runs.iter().map(|it| it.counts).fold(Counts::default(), Counts::and),
             objective: simulated.objective,

@@ -5,11 +5,12 @@ use super::modes::Span;
 use super::named::Named;
 use super::number::short;
 use super::table::with_head;
-use super::units::Units;
+use super::units::{Shown, Units};
 use super::verification::{Verification, measured};
+use crate::command;
 use crate::version::VERSION;
 use fdcc::modes::name;
-use fdcc::{Gap, LinkGap, Stay};
+use fdcc::{Gap, LinkGap, Record, Stay};
 use fdcc_grammar::SourceFile;
 use serde::Serialize;
 
@@ -18,6 +19,9 @@ use serde::Serialize;
 pub struct VerifyDocument {
     fdcc: String,
     pub model: String,
+    /// The arguments that it was run with; absent in phases.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     /// Whether the text of the model is still the one that was solved.
     same_source: bool,
     #[serde(flatten)]
@@ -31,6 +35,21 @@ pub struct VerifyDocument {
     surfaces: Named<Vec<Span>>,
     #[serde(skip_serializing_if = "Units::is_empty")]
     units: Units,
+    #[serde(flatten)]
+    picture: Picture,
+}
+
+/// What a picture of it needs beside its numbers: the solution, beside which the replay is drawn.
+#[derive(Default, Serialize)]
+struct Picture {
+    time: Vec<f64>,
+    states: Named<Vec<f64>>,
+    controls: Named<Vec<f64>>,
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    display_units: Named<Shown>,
+    /// The text of the model; absent in phases.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    source: String,
 }
 
 /// What `fdcc verify --json` prints of a model with phases.
@@ -38,6 +57,8 @@ pub struct VerifyDocument {
 pub struct VerifyPhasesDocument {
     fdcc: String,
     pub model: String,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    command: Vec<String>,
     /// Whether the text of the model is still the one that was solved.
     same_source: bool,
     /// What the solution says of the objective.
@@ -48,6 +69,8 @@ pub struct VerifyPhasesDocument {
     phases: Named<VerifyDocument>,
     #[serde(skip_serializing_if = "Units::is_empty")]
     units: Units,
+    #[serde(flatten)]
+    picture: Picture,
 }
 
 #[derive(Serialize)]
@@ -93,6 +116,7 @@ impl VerifyDocument {
         VerifyDocument {
             fdcc: VERSION.to_string(),
             model: system.name.clone(),
+            command: Vec::new(),
             same_source,
             ending: Ending::new(system, simulation, source),
             objective,
@@ -102,12 +126,23 @@ impl VerifyDocument {
             events: events(system, simulation),
             surfaces: Named(surfaces),
             units: Units::default(),
+            picture: Picture::default(),
         }
     }
 
     /// The same with the units of its values.
-    pub fn in_units(self, units: Units) -> Self {
+    pub fn in_units(mut self, units: Units) -> Self {
+        self.picture.display_units = units.shown();
         VerifyDocument { units, ..self }
+    }
+
+    /// The same with the solution that was replayed; `source` is the text of its model, or nothing
+    /// in a phase.
+    pub fn of_solution(mut self, record: &Record, source: &str) -> Self {
+        let display_units = self.picture.display_units;
+        self.picture = Picture { display_units, ..Picture::new(record, source) };
+        self.command = command::given();
+        self
     }
 
     /// Whether the solution is confirmed.
@@ -165,6 +200,21 @@ impl VerifyDocument {
     }
 }
 
+impl Picture {
+    fn new(record: &Record, source: &str) -> Self {
+        let columns = |all: &[(&str, &[f64])]| {
+            all.iter().map(|(name, column)| ((*name).to_owned(), column.to_vec())).collect()
+        };
+        Picture {
+            time: record.time.to_vec(),
+            states: columns(&record.states),
+            controls: columns(&record.controls),
+            display_units: Named::default(),
+            source: source.to_owned(),
+        }
+    }
+}
+
 impl VerifyPhasesDocument {
     pub fn new(
         (phases, links): (Vec<(String, VerifyDocument)>, &[LinkGap]),
@@ -182,18 +232,32 @@ impl VerifyPhasesDocument {
         VerifyPhasesDocument {
             fdcc: VERSION.to_string(),
             model: model.to_string(),
+            command: command::given(),
             same_source,
             objective,
             verification,
             links: links.iter().map(link).collect(),
             phases: Named(phases),
             units: Units::default(),
+            picture: Picture::default(),
         }
     }
 
     /// The same with the units of its values.
-    pub fn in_units(self, units: Units) -> Self {
+    pub fn in_units(mut self, units: Units) -> Self {
+        self.picture.display_units = units.shown();
         VerifyPhasesDocument { units, ..self }
+    }
+
+    /// The same with the solution that was replayed; phases have their own parts of it.
+    pub fn of_solution(mut self, record: &Record, source: &str) -> Self {
+        for (name, phase) in &mut self.phases.0 {
+            let Some(own) = record.phases.iter().find(|it| it.model == name) else { continue };
+            phase.picture = Picture::new(own, "");
+        }
+        let display_units = self.picture.display_units;
+        self.picture = Picture { display_units, ..Picture::new(record, source) };
+        self
     }
 
     /// Whether the solution is confirmed.

@@ -26,8 +26,8 @@ impl Dots {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let known = |value: &f64| value.is_finite();
         let ranges = [
-            range(points.iter().map(|it| it.0).filter(known), &[]),
-            range(points.iter().map(|it| it.1).filter(known), &[]),
+            range(points.iter().map(|it| it.0).filter(known), &[], 0.0),
+            range(points.iter().map(|it| it.1).filter(known), &[], 0.0),
         ];
         Dots { titles: titles.map(Clone::clone), ranges, points, is_line }
     }

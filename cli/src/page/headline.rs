@@ -3,8 +3,10 @@
 use super::json::{Json, NULL};
 use super::runs;
 use super::units::{of_condition, of_time, of_value};
+use super::unsolved;
 use crate::output::certificate::{all_missed, located, system};
 use crate::output::number::{scientific, significant};
+use crate::output::plural;
 use fdcc::names;
 
 /// How sure a sentence is.
@@ -25,7 +27,7 @@ pub struct Claim {
     pub text: String,
 }
 
-fn claim(mark: Mark, text: impl Into<String>) -> Claim {
+pub(super) fn claim(mark: Mark, text: impl Into<String>) -> Claim {
     Claim { mark, text: text.into() }
 }
 
@@ -129,6 +131,7 @@ pub fn claims(document: &Json) -> Vec<Claim> {
         return run.claims(document);
     }
     let mut claims = vec![tolerances(document)];
+    claims.extend(unsolved::claims(document));
     if is_solved(document) {
         claims.extend(replayed(document));
         claims.extend(certified(document));
@@ -148,14 +151,14 @@ fn tolerances(document: &Json) -> Claim {
     );
     match document.at("status").text() {
         "solved" | "uncertified" => {
-            claim(Mark::Certain, format!("Solved as a program of numbers: {numbers}."))
+            claim(Mark::Certain, format!("The discretised problem is solved: {numbers}."))
         }
         "acceptable" => claim(Mark::Open, format!("Solved less accurately than asked: {numbers}.")),
         _ => claim(Mark::Wrong, format!("This is the last iterate and no solution: {numbers}.")),
     }
 }
 
-fn replayed(document: &Json) -> Vec<Claim> {
+pub(super) fn replayed(document: &Json) -> Vec<Claim> {
     let replay = document.at("verification");
     if replay.is_absent() && is_certified(document) {
         return Vec::new();
@@ -263,8 +266,8 @@ fn contradicted(document: &Json) -> Option<Claim> {
         false => Some(claim(
             Mark::Open,
             format!(
-                "Nothing contradicts that it is an optimum, in {checks} necessary conditions; that \
-                 proves none."
+                "Nothing contradicts that it is an optimum, in {}; that proves none.",
+                plural(checks, "necessary condition")
             ),
         )),
     }
@@ -288,7 +291,7 @@ fn number(it: &Json) -> f64 {
     it.number().unwrap_or(f64::NAN)
 }
 
-fn time(document: &Json, it: &Json) -> String {
+pub(super) fn time(document: &Json, it: &Json) -> String {
     of_time(document).value(number(it), 4)
 }
 
@@ -314,7 +317,7 @@ mod tests {
     #[test]
     fn what_the_replay_misses_is_told_with_its_size_and_place() {
         let document = document(
-            r#""status":"solved","optimality":{"contradicted":false,"checks":[1,2]},
+            r#""status":"solved","optimality":{"contradicted":false,"checks":[1]},
                "verification":{"confirmed":false,"completed":true,"asked":0.001,"state_gap":0.02,
                "differs":{"state":"x","difference":0.003,"time":0.5},"relative_violation":0.0001}"#,
         );
@@ -322,6 +325,7 @@ mod tests {
         assert!(title.ends_with("smoothed problem, not confirmed on the true system"), "{title}");
         assert_eq!(mark(&document), Mark::Wrong);
         let claims = claims(&document);
+        assert!(claims.iter().any(|it| it.text.contains("in 1 necessary condition;")));
         let wrong: Vec<&Claim> = claims.iter().filter(|it| it.mark == Mark::Wrong).collect();
         assert_eq!(wrong.len(), 1, "{claims:?}");
         assert!(wrong[0].text.contains("x is off by 3 mm, 2 % of its motion, at t = 500 ms"));

@@ -6,20 +6,26 @@
 mod cells;
 mod curves;
 mod drawing;
+mod estimates;
 pub mod figures;
+mod gradient;
 mod headline;
 pub mod json;
+mod measured;
 pub mod notebook;
 pub mod pdf;
 pub mod plots;
 mod runs;
 mod sections;
+mod sizes;
 mod strips;
 pub mod svg;
 pub mod sweep;
 mod tables;
 mod tags;
 mod units;
+mod unsolved;
+mod verified;
 mod whole;
 
 use drawing::Drawing;
@@ -55,10 +61,11 @@ pub fn page(documents: &[Json], names: &[&str]) -> String {
     let drawing = Drawing::new(documents, names);
     let body = [
         header(documents, names),
-        tools(&drawing),
+        of_each(documents, names, runs::first_tables),
+        tools(&drawing, runs::curves(&documents[0])),
         pictures(&drawing),
         convergence(documents, names),
-        documents.iter().map(tables::tables).collect(),
+        of_each(documents, names, tables::tables),
         data(documents, &drawing),
     ];
     let model = escape(documents[0].at("model").text());
@@ -70,6 +77,18 @@ pub fn page(documents: &[Json], names: &[&str]) -> String {
          <script>{PIXELS}</script>\n<!-- uPlot:\n{LICENSE}-->\n<script>{LIBRARY}</script>\n\
          <script>\n{SCRIPT}</script>\n</body>\n</html>\n"
     )
+}
+
+/// Sections of each document, with its name in their headings where there are several.
+fn of_each(documents: &[Json], names: &[&str], sections: fn(&Json) -> String) -> String {
+    let of = |(document, name): (&Json, &&str)| match documents.len() {
+        1 => sections(document),
+        _ => {
+            let name = format!(" <span class=\"of\">{}</span></h2>", escape(name));
+            sections(document).replace("</h2>", &name)
+        }
+    };
+    documents.iter().zip(names).map(of).collect()
 }
 
 fn header(documents: &[Json], names: &[&str]) -> String {

@@ -64,10 +64,13 @@ pub fn over_time(documents: &[Json], figures: &[Figure]) -> Vec<Figure> {
             let plan = figure.curves.iter().filter(|curve| curve.kind != Kind::Replay);
             plan.map(move |it| Curve { label: figure.name.clone(), hue: Some(hue), ..it.clone() })
         });
-        let (name, unit) = (it.name.to_owned(), own.first()?.unit.clone());
+        let unit = own.first()?.unit.clone();
         let is_alike = own.iter().all(|other| other.unit == unit);
-        let curves = curves.collect();
-        is_alike.then(|| Figure { group: PLOTS, name, unit, curves, limits: Vec::new() })
+        let curves: Vec<Curve> = curves.collect();
+        let mut figure = Figure::new(PLOTS, it.name, unit);
+        figure.curves = curves;
+        figure.rounding = own.iter().map(|it| it.rounding).fold(0.0, f64::max);
+        is_alike.then_some(figure)
     };
     let all = asked(documents);
     all.iter().filter(|it| it.over() == "t").filter_map(figure).collect()

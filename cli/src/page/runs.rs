@@ -1,9 +1,12 @@
-//! What a page says of a run that is no solve: a simulation, or a closed loop.
+//! What a page says of a run that is no solve: a simulation, a closed loop, a gradient, or the
+//! replay of a solution.
 
+use super::estimates::estimates;
 use super::headline::{Claim, Mark};
 use super::json::Json;
 use super::tags::{Cell, table};
 use super::units::of_time;
+use super::{gradient, verified};
 use crate::output::number::significant;
 use crate::output::plural;
 
@@ -12,12 +15,20 @@ use crate::output::plural;
 pub enum Run {
     Simulation,
     ClosedLoop,
+    Gradient,
+    Verification,
 }
 
 /// Which one a document is of; nothing for a solve.
 pub fn of(document: &Json) -> Option<Run> {
     let has = |key: &str| !document.at(key).is_absent();
     match () {
+        _ if has("state_gaps") || !document.at("same_source").is_absent() => {
+            Some(Run::Verification)
+        }
+        _ if !document.at("of").is_absent() && !document.at("trusted").is_absent() => {
+            Some(Run::Gradient)
+        }
         _ if has("ended") && has("plant") => Some(Run::ClosedLoop),
         _ if !document.at("counts").at("rejected").is_absent() => Some(Run::Simulation),
         _ => None,
@@ -28,6 +39,8 @@ impl Run {
     /// The whole in one sentence.
     pub fn title(self, document: &Json) -> String {
         let happened = match self {
+            Run::Gradient => return gradient::title(document),
+            Run::Verification => return verified::title(document),
             Run::Simulation => plural(events(document).len(), "event"),
             Run::ClosedLoop => plural(statuses(document).len(), "step"),
         };
@@ -42,6 +55,8 @@ impl Run {
     /// How sure the whole is.
     pub fn mark(self, document: &Json) -> Mark {
         match self.early(document) {
+            _ if self == Run::Gradient => gradient::mark(document),
+            _ if self == Run::Verification => verified::mark(document),
             None if unsolved(document) == 0 => Mark::Certain,
             None => Mark::Open,
             Some(_) => Mark::Wrong,
@@ -55,6 +70,8 @@ impl Run {
             .early(document)
             .map(|why| claim(Mark::Wrong, format!("The last time is not reached: {why}.")));
         let mut claims = match self {
+            Run::Gradient => return gradient::claims(document),
+            Run::Verification => return verified::claims(document),
             Run::Simulation => vec![claim(Mark::Certain, located(document))],
             Run::ClosedLoop => {
                 let mark = if unsolved(document) == 0 { Mark::Certain } else { Mark::Wrong };
@@ -83,6 +100,10 @@ impl Run {
     pub fn again(self, document: &Json) -> String {
         let model = document.at("model").text();
         match self {
+            Run::Gradient => format!("fdcc grad {model}.fdc --out results"),
+            Run::Verification => {
+                format!("fdcc verify results/{model}.sol.json {model}.fdc --out results")
+            }
             Run::Simulation => format!("fdcc simulate {model}.fdc --out results"),
             Run::ClosedLoop => {
                 let steps = statuses(document).len();
@@ -134,8 +155,35 @@ fn located(document: &Json) -> String {
     )
 }
 
+/// What the curves of the only document are.
+pub fn curves(document: &Json) -> &'static str {
+    match of(document) {
+        Some(Run::Simulation) => "simulation",
+        Some(Run::ClosedLoop) => "plant",
+        Some(Run::Gradient) => "trajectory",
+        _ => "solution",
+    }
+}
+
+/// What a page is about, before all pictures: derivatives, or the estimates of a fit.
+pub fn first_tables(document: &Json) -> String {
+    match of(document) {
+        Some(Run::Gradient) => gradient::tables(document),
+        _ => estimates(document),
+    }
+}
+
+/// What no plot shows.
+pub fn tables(document: &Json) -> String {
+    let own = match of(document) {
+        Some(Run::Verification) => verified::tables(document),
+        _ => String::new(),
+    };
+    own + &table_of_events(document)
+}
+
 /// When what happened, and how far from grazing.
-pub fn table_of_events(document: &Json) -> String {
+fn table_of_events(document: &Json) -> String {
     let row = |it: &Json| {
         let number = |key: &str| it.at(key).number().unwrap_or(f64::NAN);
         vec![

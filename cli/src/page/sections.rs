@@ -1,20 +1,26 @@
 //! The pictures of a page: an empty place for each, with its caption.
 
 use super::drawing::Drawing;
-use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, STATES};
+use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, RESIDUALS, STATES};
 use super::json::Json;
 use super::plots::PLOTS;
 use super::tags::{escape, section};
 
-/// What stays in sight while reading: which line is which, the time at the cursor.
-pub fn tools(drawing: &Drawing) -> String {
+/// What stays in sight while reading: which line is which (`curves` of the only document), the time
+/// at the cursor.
+pub fn tools(drawing: &Drawing, curves: &str) -> String {
     let key = |(at, name): (usize, &String)| {
-        let name = if name.is_empty() { "solution" } else { name };
+        let name = if name.is_empty() { curves } else { name };
         format!("<span class=\"key key-{at}\">{}</span>\n", escape(name))
     };
     let mut keys: String = drawing.names.iter().enumerate().map(key).collect();
-    if drawing.figures.iter().any(|it| it.curves.iter().any(|it| it.kind == Kind::Replay)) {
+    let has =
+        |kind: Kind| drawing.figures.iter().any(|it| it.curves.iter().any(|it| it.kind == kind));
+    if has(Kind::Replay) {
         keys += "<span class=\"key key-replay\">replay on the true system</span>\n";
+    }
+    if has(Kind::Points) {
+        keys += "<span class=\"key key-points\">measured</span>\n";
     }
     format!(
         "<div class=\"tools\">\n{keys}<span>drag to zoom all plots</span>\n\
@@ -73,6 +79,7 @@ fn asked(drawing: &Drawing) -> String {
 fn heading(group: &str) -> &str {
     match group {
         COSTATES => "Costates: what the objective changes by with a state",
+        RESIDUALS => "Residuals: the model less what was measured",
         HAMILTONIAN => "Hamiltonian: running cost, and costates times right side",
         other => other,
     }
@@ -114,8 +121,12 @@ const HUES: usize = 8;
 
 /// One signal over another, where there are two.
 fn portrait(drawing: &Drawing) -> String {
-    let states = drawing.figures.iter().filter(|it| it.group == STATES).count();
-    if states < 2 {
+    let states = || drawing.figures.iter().filter(|it| it.group == STATES);
+    let has_two = |of: usize| {
+        let own = states().filter(|it| it.curves.iter().any(|curve| curve.of == of));
+        own.count() >= 2
+    };
+    if !(0..drawing.names.len()).any(has_two) {
         return String::new();
     }
     let choice = |id: &str| format!("<select id=\"{id}\"></select>");

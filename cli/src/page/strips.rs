@@ -40,8 +40,23 @@ pub fn strips(documents: &[Json], of: usize) -> Vec<Strip> {
     for (name, spans) in arcs {
         let own = phases.iter().find_map(|(phase, _)| name.strip_prefix(phase)?.strip_prefix('.'));
         let spans = spans.list().iter().map(span).collect();
-        extend(&mut strips, own.unwrap_or(name), "control", spans);
+        let name = own.unwrap_or(name);
+        let has = |key: &str| {
+            self::parts(documents).iter().any(|it| !it.json.at(key).at(name).is_absent())
+        };
+        let of = if has("path") {
+            "path"
+        } else if has("states") {
+            "state"
+        } else {
+            "control"
+        };
+        extend(&mut strips, name, of, spans);
     }
+    // What is at a bound by its values says the same of an arc less exactly.
+    let located: Vec<String> =
+        strips.iter().filter(|it| it.of != "surface").map(|it| it.name.clone()).collect();
+    let is_open = |name: &str| !located.iter().any(|it| it == name);
     for part in own().filter(|_| arcs.is_empty()) {
         for (name, values) in part.json.at("controls").pairs() {
             let bounds = part.json.at("bounds").at(name);
@@ -49,11 +64,11 @@ pub fn strips(documents: &[Json], of: usize) -> Vec<Strip> {
         }
     }
     for part in own() {
-        for (name, values) in part.json.at("states").pairs() {
+        for (name, values) in part.json.at("states").pairs().iter().filter(|it| is_open(&it.0)) {
             let bounds = part.json.at("bounds").at(name);
             extend(&mut strips, name, "state", at_bounds(part, bounds, &values.column()));
         }
-        for (name, it) in part.json.at("path").pairs() {
+        for (name, it) in part.json.at("path").pairs().iter().filter(|it| is_open(&it.0)) {
             let values = it.at("values").column();
             let spans = at_bounds(part, it.at("bounds"), values.get(1..).unwrap_or_default());
             extend(&mut strips, name, "path", spans);
@@ -134,6 +149,17 @@ mod tests {
         );
         let strips = strips(&documents, 0);
         assert_eq!(strips[0].spans[0].to, 0.9);
+    }
+
+    #[test]
+    fn a_path_condition_and_its_arc_are_one_row() {
+        let documents = document(
+            r#"{"time":[0,1,2],"path":{"c":{"bounds":[0,null],"values":[null,0,5]}},
+                "certificate":{"certified":true,"arcs":{"c":[{"mode":"min","from":0,"to":0.9},
+                {"mode":"free","from":0.9,"to":2}]}}}"#,
+        );
+        let all = strips(&documents, 0);
+        assert_eq!((all.len(), all[0].of, all[0].spans[0].to), (1, "path", 0.9));
     }
 
     #[test]

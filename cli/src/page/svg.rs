@@ -1,9 +1,9 @@
 //! Plots of a solution for papers, as SVG: the same figures as those of its page, drawn by
 //! plotters.
 
-use super::curves::{Piece, pieces, range, under};
+use super::curves::{Piece, Point, pieces, points, range, under};
 use super::drawing::times;
-use super::figures::{Curve, Figure, Kind};
+use super::figures::{Curve, Figure, Kind, Limit};
 use super::json::Json;
 use super::plots::Portrait;
 use super::strips::strips;
@@ -26,6 +26,7 @@ pub(super) const PLAN: RGBColor = RGBColor(31, 95, 168);
 /// Of several signals in one plot: those of the page.
 const HUES: [RGBColor; 4] =
     [PLAN, RGBColor(194, 65, 12), RGBColor(20, 113, 61), RGBColor(124, 58, 237)];
+const MEASURED: RGBColor = RGBColor(26, 29, 33);
 const REPLAY: RGBColor = RGBColor(194, 65, 12);
 pub(super) const LIMIT: RGBColor = RGBColor(179, 38, 30);
 pub(super) const HELD: RGBColor = RGBColor(226, 160, 18);
@@ -45,7 +46,10 @@ struct Plot {
     titles: [String; 2],
     ranges: [[f64; 2]; 2],
     curves: Vec<Traced>,
-    limits: Vec<f64>,
+    /// Measurements, with how they are drawn.
+    points: Vec<(Kind, Vec<Point>)>,
+    /// Lines from one point to another.
+    limits: Vec<[ChartPoint; 2]>,
     /// Spans of the first axis that are coloured.
     shaded: Vec<[f64; 2]>,
     /// Lines behind which a condition is violated.
@@ -56,20 +60,34 @@ struct Plot {
 pub fn over_time(document: &Json, figures: &[&Figure]) -> String {
     let time = of_time(document);
     let across = times(std::slice::from_ref(document)).map(|it| it / time.si);
-    let plot = |figure: &&Figure| {
-        let curves = curves(document, figure);
-        let limits: Vec<f64> = figure.limits.iter().map(|it| it.value / figure.unit.si).collect();
-        let points = || curves.iter().flat_map(|(_, _, pieces)| pieces.iter().flatten());
-        Plot {
-            titles: [titled("t", &time), titled(&figure.signal(), &figure.unit)],
-            ranges: [across, range(points().map(|it| it.1), &limits)],
-            limits,
-            shaded: held(document, time.si),
-            borders: Vec::new(),
-            curves,
-        }
-    };
+    let plot = |figure: &&Figure| plot_over_time(document, figure, across, &time);
     drawn(&figures.iter().map(plot).collect::<Vec<_>>(), HEIGHT)
+}
+
+fn plot_over_time(document: &Json, figure: &Figure, across: [f64; 2], time: &Unit) -> Plot {
+    let curves = curves(document, figure);
+    let points: Vec<_> = figure.curves.iter().filter(|it| it.kind.is_measured()).collect();
+    let points: Vec<_> =
+        points.iter().map(|it| (it.kind, self::points(document, figure, it))).collect();
+    let of_lines = curves.iter().flat_map(|(_, _, pieces)| pieces.iter().flatten());
+    let of_points = points.iter().flat_map(|it| &it.1);
+    let ends = of_points.flat_map(|it| it.bar.unwrap_or([it.value; 2]));
+    let values = of_lines.map(|it| it.1).chain(ends);
+    let si = figure.unit.si;
+    let limits: Vec<f64> = figure.limits.iter().map(|it| it.value / si).collect();
+    let ends = |it: &Limit| {
+        let [from, to] = [it.from, it.to].map(|time_in_si| time_in_si.map(|it| it / time.si));
+        [(from.unwrap_or(across[0]), it.value / si), (to.unwrap_or(across[1]), it.value / si)]
+    };
+    Plot {
+        titles: [titled("t", time), titled(&figure.signal(), &figure.unit)],
+        ranges: [across, range(values, &limits, figure.rounding / si)],
+        limits: figure.limits.iter().map(ends).collect(),
+        shaded: held(document, time.si),
+        borders: Vec::new(),
+        points,
+        curves,
+    }
 }
 
 /// How a curve is drawn, its colour, and its pieces between its jumps.
@@ -131,7 +149,11 @@ fn plane(document: &Json, of: &[&Figure], over: &Figure) -> Plot {
     let title = of.iter().map(|it| titled(&it.signal(), &it.unit)).collect::<Vec<_>>().join(", ");
     Plot {
         titles: [titled(&over.signal(), &over.unit), title],
-        ranges: [range(points().map(|it| it.0), &[]), range(points().map(|it| it.1), &[])],
+        ranges: [
+            range(points().map(|it| it.0), &[], over.rounding / over.unit.si),
+            range(points().map(|it| it.1), &[], of[0].rounding / of[0].unit.si),
+        ],
+        points: Vec::new(),
         limits: Vec::new(),
         shaded: Vec::new(),
         borders: Vec::new(),
@@ -143,7 +165,7 @@ fn curves(document: &Json, figure: &Figure) -> Vec<Traced> {
     let traced = |curve: &Curve| {
         (curve.kind, curve.hue.unwrap_or_default(), pieces(document, figure, curve))
     };
-    figure.curves.iter().map(traced).collect()
+    figure.curves.iter().filter(|it| !it.kind.is_measured()).map(traced).collect()
 }
 
 fn titled(name: &str, unit: &Unit) -> String {
@@ -183,15 +205,15 @@ pub(super) type Drawn = Result<(), Failed>;
 
 impl Plot {
     fn draw(&self, area: &Area) -> Drawn {
-        let [[left, right], [low, high]] = self.ranges;
+        let [_, [low, high]] = self.ranges;
         let mut chart = chart(area, self.ranges)?;
         let shade = HELD.mix(0.15).filled();
         chart.draw_series(
             self.shaded.iter().map(|[from, to]| Rectangle::new([(*from, low), (*to, high)], shade)),
         )?;
         draw_axes(&mut chart, self.ranges, &self.titles)?;
-        for limit in self.limits.iter().filter(|it| (low..=high).contains(*it)) {
-            dashed(&mut chart, &[(left, *limit), (right, *limit)], LIMIT)?;
+        for limit in self.limits.iter().filter(|it| (low..=high).contains(&it[0].1)) {
+            dashed(&mut chart, limit, LIMIT)?;
         }
         for border in &self.borders {
             line(&mut chart, border, LIMIT)?;
@@ -204,8 +226,20 @@ impl Plot {
                 }
             }
         }
-        Ok(())
+        self.points.iter().try_for_each(|(kind, points)| measured(&mut chart, *kind, points))
     }
+}
+
+/// Measurements with their error bars; what remains of them as lines from 0.
+fn measured(chart: &mut Chart, kind: Kind, points: &[Point]) -> Drawn {
+    let thin = MEASURED.stroke_width(FINE as u32);
+    for point in points {
+        let end = if kind == Kind::Stems { Some([0.0, point.value]) } else { point.bar };
+        let ends = end.map(|it| it.map(|value| (point.time, value)));
+        chart.draw_series(ends.map(|it| PathElement::new(it, thin)))?;
+    }
+    let dot = |it: &Point| Circle::new((it.time, it.value), 2 * FINE, MEASURED.filled());
+    chart.draw_series(points.iter().map(dot)).map(|_| ())
 }
 
 type Failed = DrawingAreaErrorKind<std::io::Error>;
@@ -244,10 +278,12 @@ pub(super) fn draw_axes(
         .draw()
 }
 
-/// Of a tick: 0 where nothing but rounding is left.
+/// Of a tick: 0 where nothing but rounding is left, with as many digits as tell it from the others.
 fn label(value: f64, [low, high]: [f64; 2]) -> String {
     let is_zero = value.abs() < 1e-9 * (high - low);
-    significant(if is_zero { 0.0 } else { value }, 5)
+    let lost = (low.abs().max(high.abs()) / (high - low)).log10().ceil();
+    let digits = if lost.is_finite() { (lost as usize + 3).clamp(5, 12) } else { 5 };
+    significant(if is_zero { 0.0 } else { value }, digits)
 }
 
 pub(super) fn line(chart: &mut Chart, points: &[ChartPoint], colour: RGBColor) -> Drawn {
@@ -270,6 +306,12 @@ mod tests {
     fn zero_is_a_round_number() {
         let of = |value| label(value, [-0.25, 0.25]);
         assert_eq!([of(-2.8e-17), of(0.1), of(1e-3)], ["0", "0.1", "0.001"]);
+    }
+
+    #[test]
+    fn ticks_are_told_apart() {
+        let of = |value| label(value, [-32.9785, -32.9784]);
+        assert_eq!([of(-32.97845), of(-32.97842)], ["-32.97845", "-32.97842"]);
     }
 
     #[test]

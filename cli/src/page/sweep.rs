@@ -3,6 +3,7 @@
 use super::STYLE;
 use super::cells::{Cells, Dots};
 use super::tags::{Cell, escape, section, table};
+use crate::command::line;
 use crate::output::number::significant;
 use crate::output::plural;
 use crate::output::rows::{Scalars, Value};
@@ -10,6 +11,16 @@ use crate::output::units::Units;
 
 /// A sweep with more rows has no page: nobody reads it, and it would be megabytes.
 pub const MOST: usize = 5_000;
+/// Says that there are too many rows for a page, if there are.
+pub fn too_many(rows: usize) -> String {
+    match rows > MOST {
+        true => format!(
+            " no page: it has room for {MOST} rows; `fdcc merge` makes a table of them all\n"
+        ),
+        false => String::new(),
+    }
+}
+
 /// More rows are not in the table.
 const MOST_LISTED: usize = 500;
 
@@ -17,6 +28,8 @@ const MOST_LISTED: usize = 500;
 pub struct Page<'p> {
     pub model: &'p str,
     pub source: &'p str,
+    /// The arguments of the sweep.
+    pub command: Vec<String>,
     pub units: &'p Units,
     /// The parameters of the model: whatever else is swept is a key of the method, without a unit.
     pub params: &'p [String],
@@ -105,33 +118,19 @@ impl Page<'_> {
     }
 
     fn pictures(&self) -> String {
-        let varied = self.varied();
-        let found = self.found();
-        let sorts: Vec<Sort> = self.rows.iter().map(|(_, row)| sort(row)).collect();
-        let over = |x: &Column, y: &Column, is_line: bool| {
-            let (titles, points) = ([&x.title, &y.title], x.values.iter().zip(&y.values));
-            let points = points.zip(&sorts).map(|((x, y), sort)| (*x, *y, *sort)).collect();
-            figure(&y.title, &x.title, &Dots::new(titles, points, is_line).svg())
-        };
-        let mut figures: Vec<String> = Vec::new();
-        match &varied[..] {
-            [x] => figures.extend(found.iter().map(|y| over(x, y, true))),
-            [x, y] => figures.extend(found.iter().map(|it| {
-                let places = x.values.iter().zip(&y.values).map(|(x, y)| [*x, *y]);
-                let cells = places.zip(&it.values).zip(&sorts);
-                let cells = cells.map(|((place, value), sort)| (place, *value, *sort)).collect();
-                let picture = Cells::new([&x.title, &y.title], &it.title, cells).svg();
-                figure(&it.title, &format!("{} and {}", x.title, y.title), &picture)
-            })),
+        let (varied, found) = (self.varied(), self.found());
+        let mut figures = match &varied[..] {
+            [x] => found.iter().map(|y| self.over(x, y, true)).collect(),
+            [x, y] if is_grid(x, y) => found.iter().map(|it| self.map([x, y], it)).collect(),
             many => {
-                for x in many {
-                    figures.extend(found.iter().map(|y| over(x, y, false)));
-                }
+                let over = |x| found.iter().map(|y| self.over(x, y, false)).collect::<Vec<_>>();
+                many.iter().flat_map(over).collect::<Vec<String>>()
             }
-        }
+        };
         let varies = |it: &&Column| differ(&it.values);
         if let [objective, others @ ..] = &found[..] {
-            figures.extend(others.iter().filter(varies).map(|it| over(it, objective, false)));
+            let others = others.iter().filter(varies);
+            figures.extend(others.map(|it| self.over(it, objective, false)));
         }
         match figures.is_empty() {
             true => String::new(),
@@ -142,24 +141,45 @@ impl Page<'_> {
         }
     }
 
-    /// What has several values, without what goes side by side with one before it.
+    fn sorts(&self) -> impl Iterator<Item = Sort> {
+        self.rows.iter().map(|(_, row)| sort(row))
+    }
+
+    /// A value over a number.
+    fn over(&self, x: &Column, y: &Column, is_line: bool) -> String {
+        let (titles, points) = ([&x.title, &y.title], x.values.iter().zip(&y.values));
+        let points = points.zip(self.sorts()).map(|((x, y), sort)| (*x, *y, sort)).collect();
+        figure(&y.title, &x.title, &Dots::new(titles, points, is_line).svg())
+    }
+
+    /// A value as colours over two numbers.
+    fn map(&self, [x, y]: [&Column; 2], value: &Column) -> String {
+        let places = x.values.iter().zip(&y.values).map(|(x, y)| [*x, *y]);
+        let cells = places.zip(&value.values).zip(self.sorts());
+        let cells = cells.map(|((place, value), sort)| (place, *value, sort)).collect();
+        let picture = Cells::new([&x.title, &y.title], &value.title, cells).svg();
+        figure(&value.title, &format!("{} and {}", x.title, y.title), &picture)
+    }
+
+    /// The numbers that have several values; of columns that all go the same way, as lists side by
+    /// side do, the first.
     fn varied(&self) -> Vec<Column> {
         let Some((_, first)) = self.rows.first() else { return Vec::new() };
-        let mut kept: Vec<Column> = Vec::new();
-        for (at, (name, _)) in first.swept.0.iter().enumerate() {
+        let column = |(at, (name, _)): (usize, &(String, Value))| {
             let value = |(_, row): &(usize, Scalars)| match row.swept.0.get(at) {
                 Some((_, Value::Whole(it))) => self.scaled(name, *it as f64),
                 Some((_, Value::Number(it))) => self.scaled(name, *it),
                 _ => f64::NAN,
             };
-            let column =
-                Column { title: self.title(name), values: self.rows.iter().map(value).collect() };
-            let is_number = column.values.iter().all(|it| it.is_finite());
-            if is_number && differ(&column.values) && !kept.iter().any(|it| follows(it, &column)) {
-                kept.push(column);
-            }
+            Column { title: self.title(name), values: self.rows.iter().map(value).collect() }
+        };
+        let all = first.swept.0.iter().enumerate().map(column);
+        let is_number = |it: &Column| it.values.iter().all(|it| it.is_finite());
+        let mut all: Vec<Column> = all.filter(|it| is_number(it) && differ(&it.values)).collect();
+        if all.split_first().is_some_and(|(x, others)| others.iter().all(|y| go_together(x, y))) {
+            all.truncate(1);
         }
-        kept
+        all
     }
 
     /// The objective and the unknowns.
@@ -223,8 +243,13 @@ impl Page<'_> {
     }
 
     fn text(&self) -> String {
+        let words = self.command.iter().map(String::as_str).chain(["--out", "results"]);
+        let again = match self.command.is_empty() {
+            true => String::new(),
+            false => format!("<p>To run it again:</p>\n<pre>{}</pre>\n", escape(&line(words))),
+        };
         let body = format!(
-            "<details><summary>{}.fdc</summary>\n<pre>{}</pre></details>\n",
+            "{again}<details><summary>{}.fdc</summary>\n<pre>{}</pre></details>\n",
             escape(self.model),
             escape(self.source)
         );
@@ -252,13 +277,27 @@ fn differ(values: &[f64]) -> bool {
     known.any(|it| Some(it) != first)
 }
 
-/// Whether a column has one value for each value of another one, as lists side by side have.
-fn follows(one: &Column, other: &Column) -> bool {
-    let mut pairs: Vec<(u64, u64)> =
-        one.values.iter().zip(&other.values).map(|(a, b)| (a.to_bits(), b.to_bits())).collect();
-    pairs.sort_unstable();
+/// Whether a column rises or falls all the way with another one.
+fn go_together(x: &Column, y: &Column) -> bool {
+    let mut pairs: Vec<(f64, f64)> =
+        x.values.iter().copied().zip(y.values.iter().copied()).collect();
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     pairs.dedup();
-    pairs.windows(2).all(|it| it[0].0 != it[1].0)
+    let goes = |is: fn(f64, f64) -> bool| {
+        pairs.windows(2).all(|it| it[0].0 < it[1].0 && is(it[0].1, it[1].1))
+    };
+    goes(|a, b| a < b) || goes(|a, b| a > b)
+}
+
+/// Whether there is a row for most pairs of values of two columns.
+fn is_grid(x: &Column, y: &Column) -> bool {
+    let count = |values: &[f64]| {
+        let mut all = values.to_vec();
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all.len()
+    };
+    2 * x.values.len() > count(&x.values) * count(&y.values)
 }
 
 #[cfg(test)]
@@ -286,7 +325,16 @@ mod tests {
 
     fn page(rows: Vec<(usize, Scalars)>, all: usize) -> String {
         let units = Units::default();
-        Page { model: "a", source: "model <a>", units: &units, params: &[], rows, all }.html()
+        Page {
+            model: "a",
+            source: "model <a>",
+            command: vec!["sweep".into()],
+            units: &units,
+            params: &[],
+            rows,
+            all,
+        }
+        .html()
     }
 
     #[test]
@@ -305,5 +353,23 @@ mod tests {
         let product = [r#""mu":0.1,"N":50"#, r#""mu":0.2,"N":50"#, r#""mu":0.1,"N":80"#];
         assert!(!page(rows(&side), 2).contains("mu and N"));
         assert!(page(rows(&product), 3).contains("mu and N"));
+    }
+
+    #[test]
+    fn a_sweep_without_a_page_says_so() {
+        assert!(too_many(MOST).is_empty() && too_many(MOST + 1).contains("room for 5000 rows"));
+    }
+
+    /// A table of cases: neither a line, which says that what is between is known, nor a grid.
+    #[test]
+    fn columns_that_vary_each_for_itself_are_points_over_each() {
+        let cases = [r#""mu":0.1,"N":50"#, r#""mu":0.2,"N":90"#, r#""mu":0.3,"N":60"#];
+        let html = page(rows(&[&cases[..], &[r#""mu":0.4,"N":70"#]].concat()), 4);
+        assert_eq!(html.matches("<figure>").count(), 2, "{html}");
+        assert!(html.contains("over mu</span>") && html.contains("over N</span>"));
+        assert!(
+            !html.contains("mu and N")
+                && !html.contains(r##"fill="none" opacity="1" stroke="#1F5FA8""##)
+        );
     }
 }

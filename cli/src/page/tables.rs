@@ -4,6 +4,7 @@ use super::json::Json;
 use super::runs;
 use super::tags::{Cell, escape, section, table};
 use super::units::{of_condition, of_time, of_value, per};
+use crate::command::line;
 use crate::output::number::{scientific, significant};
 
 /// The objective, the unknowns and some parameters, large.
@@ -13,11 +14,15 @@ pub fn tiles(document: &Json, params: &[&str]) -> String {
     let objective = document.at("objective").number().map(|it| ("objective".to_owned(), it));
     let free = document.at("free").pairs().iter();
     let free = free.filter_map(|(name, it)| Some((name.clone(), it.number()?)));
+    let of = document.at("value").number();
+    let value = of.map(|it| (document.at("of").text().to_owned(), it));
     let tile = |(name, value): (String, f64)| {
-        let value = of_value(document, &name).value(value, 7);
+        let is_value = document.at("of").text() == name;
+        let unit = of_value(document, if is_value { "objective" } else { &name });
+        let value = unit.value(value, 7);
         format!("<div><dt>{}</dt><dd>{}</dd></div>\n", escape(&name), escape(&value))
     };
-    let tiles: String = params.chain(objective).chain(free).map(tile).collect();
+    let tiles: String = params.chain(objective).chain(value).chain(free).map(tile).collect();
     format!("<dl class=\"tiles\">\n{tiles}</dl>\n")
 }
 
@@ -33,7 +38,7 @@ pub fn differing(documents: &[Json]) -> Vec<&str> {
 /// All tables of a document, and its text.
 pub fn tables(document: &Json) -> String {
     if runs::of(document).is_some() {
-        return runs::table_of_events(document) + &text(document);
+        return runs::tables(document) + &text(document);
     }
     [
         sensitivities(document),
@@ -213,11 +218,7 @@ fn text(document: &Json) -> String {
         return String::new();
     }
     let model = document.at("model").text();
-    let solve = || {
-        let verify = format!("fdcc verify results/{model}.sol.json {model}.fdc");
-        format!("fdcc solve {model}.fdc --out results\n{verify}")
-    };
-    let again = runs::of(document).map_or_else(solve, |run| run.again(document));
+    let again = again(document);
     section(
         "The model",
         &format!(
@@ -228,6 +229,28 @@ fn text(document: &Json) -> String {
             escape(text)
         ),
     )
+}
+
+/// What runs it again: the command that was given, or what leads to such a document where nothing
+/// is known of it.
+fn again(document: &Json) -> String {
+    let model = document.at("model").text();
+    let usual = format!("{model}.fdc");
+    let given: Vec<&str> = document.at("command").list().iter().map(Json::text).collect();
+    let file = given.iter().find(|it| it.ends_with(".fdc")).unwrap_or(&usual.as_str()).to_string();
+    let given = (!given.is_empty()).then(|| line(given.into_iter().chain(["--out", "results"])));
+    match runs::of(document) {
+        Some(run) => given.unwrap_or_else(|| run.again(document)),
+        // A sweep writes many solutions.
+        None if given.as_ref().is_some_and(|it| it.starts_with("fdcc sweep")) => {
+            given.unwrap_or_default()
+        }
+        None => {
+            let verify = line(["verify", &format!("results/{model}.sol.json"), &file]);
+            let given = given.unwrap_or_else(|| line(["solve", &usual, "--out", "results"]));
+            format!("{given}\n{verify}")
+        }
+    }
 }
 
 fn number(it: &Json) -> String {

@@ -41,7 +41,11 @@ pub fn of_condition(document: &Json, condition: &str) -> Unit {
         let rest = condition.strip_prefix(name);
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
     };
-    let known = document.at("display_units").pairs().iter().find(|(name, _)| is_it(name));
+    let all = document.at("display_units").pairs();
+    // A condition of a phase is told with its name in front.
+    let of_phase = condition.split_once('.').map(|it| it.1);
+    let known = all.iter().find(|(name, _)| is_it(name));
+    let known = known.or_else(|| all.iter().find(|(name, _)| of_phase == Some(name.as_str())));
     // `start v` is the start that the model gives to a state.
     let own = condition.strip_prefix("start ").unwrap_or(condition);
     of_value(document, known.map_or(own, |(name, _)| name))

@@ -17,8 +17,19 @@ pub struct Residuals {
     pub is_fit: bool,
     /// One for each row: the residual is this times the term. It is 0 where nothing was measured.
     pub weights: Vec<f64>,
+    /// What was measured in each row, where the term is its difference to a signal, times a factor.
+    pub readings: Option<Readings>,
     /// The terms, values only.
     pub rows: Measurements,
+}
+
+/// Measurements, one for each row.
+#[derive(Clone, Debug)]
+pub struct Readings {
+    /// What was measured.
+    pub measured: Vec<f64>,
+    /// The term is this times the signal less the measurement.
+    pub factors: Vec<f64>,
 }
 
 /// The residuals of a model, whose squares are minimised; none if what is minimised over rows of
@@ -30,15 +41,17 @@ pub fn residuals(model: &Model) -> Vec<Residuals> {
     let weights: Option<Vec<Vec<f64>>> =
         squares.iter().map(|it| it.weights(model, &graph, &numbers)).collect();
     let Some(weights) = weights else { return Vec::new() };
+    let readings: Vec<_> = squares.iter().map(|it| it.readings(model, &graph, &numbers)).collect();
     let functions = machine_code(graph, functions);
-    let all = squares.iter().zip(weights).zip(&functions);
-    let residuals = all.map(|((square, weights), function)| {
+    let all = squares.iter().zip(weights).zip(readings).zip(&functions);
+    let residuals = all.map(|(((square, weights), readings), function)| {
         let sum = &model.sums[square.root.sum];
         Residuals {
             name: square.name.clone(),
             data: model.tables[sum.table].name.clone(),
             is_fit: sum.is_fit,
             weights,
+            readings: readings.map(|[measured, factors]| Readings { measured, factors }),
             rows: square.root.with_rows(model, &numbers, function),
         }
     });

@@ -17,6 +17,14 @@ pub(crate) struct Square {
     pub(crate) root: Measured,
     /// What the root reads of the row, or else the whole sum.
     pub(crate) name: String,
+    /// What was measured and what the root is a part of: the root is `factor (signal - measured)`.
+    reading: Option<Reading>,
+}
+
+/// Both over columns and parameters.
+struct Reading {
+    measured: ExprId,
+    factor: ExprId,
 }
 
 /// All squares of the sums that are minimised; nothing if one of these is no sum of squares.
@@ -35,8 +43,9 @@ pub(crate) fn squares(model: &Model) -> (Graph, Vec<Square>) {
         };
         for (weight, root) in terms {
             let name = name(model, &graph, sum, root);
+            let reading = reading(model, &mut graph, root);
             let root = measured::alone(model, &mut graph, &sizes, (sum, root), &dynamics);
-            squares.push(Square { weight, root, name });
+            squares.push(Square { weight, root, name, reading });
         }
     }
     (graph, squares)
@@ -50,11 +59,26 @@ impl Square {
         graph: &Graph,
         numbers: &Numbers,
     ) -> Option<Vec<f64>> {
+        let weights = self.in_rows(model, graph, numbers, self.weight);
+        weights.iter().all(|it| *it >= 0.0).then(|| weights.iter().map(|it| it.sqrt()).collect())
+    }
+
+    /// What was measured in each row, and by which factor its difference to the signal is in the
+    /// root; none where the root is no such difference.
+    pub(crate) fn readings(
+        &self,
+        model: &Model,
+        graph: &Graph,
+        numbers: &Numbers,
+    ) -> Option<[Vec<f64>; 2]> {
+        let Reading { measured, factor } = self.reading.as_ref()?;
+        Some([measured, factor].map(|it| self.in_rows(model, graph, numbers, *it)))
+    }
+
+    fn in_rows(&self, model: &Model, graph: &Graph, numbers: &Numbers, it: ExprId) -> Vec<f64> {
         let at = model.sums[self.root.sum].table;
         let table = (at, &model.tables[at]);
-        let inputs = numbers.inputs().to_vec();
-        let weights = by_row(graph, &model.symbols, table, self.weight, inputs);
-        weights.iter().all(|it| *it >= 0.0).then(|| weights.iter().map(|it| it.sqrt()).collect())
+        by_row(graph, &model.symbols, table, it, numbers.inputs().to_vec())
     }
 }
 
@@ -79,6 +103,31 @@ fn taken_apart(model: &Model, graph: &mut Graph, value: ExprId) -> Option<Vec<(E
         open.push((graph.mul(weight, factor), rest));
     }
     Some(squares)
+}
+
+/// The measurement in a root such as `(signal - measured)/deviation`.
+fn reading(model: &Model, graph: &mut Graph, root: ExprId) -> Option<Reading> {
+    let (mut factor, mut rest) = (graph.number(1.0), root);
+    loop {
+        if let Some(&[a, b]) = graph.as_call(rest, Builtin::Sub) {
+            if is_weight(model, graph, b) {
+                return Some(Reading { measured: b, factor });
+            }
+            let factor = graph.neg(factor);
+            return is_weight(model, graph, a).then_some(Reading { measured: a, factor });
+        }
+        if let Some(&[a]) = graph.as_call(rest, Builtin::Neg) {
+            (factor, rest) = (graph.neg(factor), a);
+        } else if let Some(&[a, b]) = graph.as_call(rest, Builtin::Div) {
+            is_weight(model, graph, b).then_some(())?;
+            (factor, rest) = (graph.div(factor, b), a);
+        } else {
+            let &[a, b] = graph.as_call(rest, Builtin::Mul)? else { return None };
+            let (own, other) = if is_weight(model, graph, a) { (a, b) } else { (b, a) };
+            is_weight(model, graph, own).then_some(())?;
+            (factor, rest) = (graph.mul(factor, own), other);
+        }
+    }
 }
 
 fn is_weight(model: &Model, graph: &Graph, id: ExprId) -> bool {

@@ -14,7 +14,7 @@
 //! parameter estimation, 1974, chapter 7.)
 
 use crate::{Phases, Solution};
-use fdcc_compiler::{Model, residuals};
+use fdcc_compiler::{Model, Readings, Residuals, residuals};
 use fdcc_runtime::nlp::Covariance;
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solution::terms_of_rows;
@@ -106,6 +106,11 @@ pub struct Residual {
     pub values: Vec<f64>,
     /// Whether something was measured in a row.
     pub is_measured: Vec<bool>,
+    /// What was measured in each row; nothing where the sum is not of differences to a signal.
+    pub measured: Option<Vec<f64>>,
+    /// The difference to what was measured that makes the residual 1: its standard deviation, if
+    /// the model has it. Beside `measured`.
+    pub deviations: Option<Vec<f64>>,
 }
 
 impl Solution {
@@ -196,8 +201,14 @@ fn followed(
         own.time.extend(more.time);
         own.values.extend(more.values);
         own.is_measured.extend(more.is_measured);
+        own.measured = both(own.measured.take(), more.measured);
+        own.deviations = both(own.deviations.take(), more.deviations);
     }
     (first, is_known && next.1)
+}
+
+fn both(first: Option<Vec<f64>>, next: Option<Vec<f64>>) -> Option<Vec<f64>> {
+    first.zip(next).map(|(first, next)| [first, next].concat())
 }
 
 /// Standard errors for residuals in standard deviations; none of what is not determined.
@@ -245,13 +256,29 @@ fn of_phase(
         let behind = phase.and_then(|phase| name.strip_prefix(phase)?.strip_prefix('.'));
         behind.unwrap_or(name).to_owned()
     };
+    let of_rows = |all: &[f64], terms: &[(usize, f64)]| -> Vec<f64> {
+        terms.iter().map(|(row, _)| all[*row]).collect()
+    };
     let of_signal = all.iter().zip(terms).map(|(it, terms)| Residual {
+        measured: it.readings.as_ref().map(|own| of_rows(&own.measured, &terms)),
+        deviations: it.readings.as_ref().map(|own| of_rows(&deviations(own, &it.weights), &terms)),
         phase: phase.map(str::to_owned),
         name: own(&it.name),
         data: it.data.clone(),
         time: terms.iter().map(|(row, _)| it.rows.times[*row]).collect(),
-        values: terms.iter().map(|(row, term)| term * it.weights[*row]).collect(),
+        values: terms.iter().map(|(row, term)| term * it.weights[*row] * sign(it, *row)).collect(),
         is_measured: terms.iter().map(|(row, _)| it.weights[*row] > 0.0).collect(),
     });
     (of_signal.collect(), is_known)
+}
+
+/// A square may be written as that of the measurement less the signal.
+fn sign(residuals: &Residuals, row: usize) -> f64 {
+    residuals.readings.as_ref().map_or(1.0, |it| it.factors[row].signum())
+}
+
+/// By how much each measurement is off where its residual is 1.
+fn deviations(readings: &Readings, weights: &[f64]) -> Vec<f64> {
+    let factors = readings.factors.iter().zip(weights);
+    factors.map(|(factor, weight)| 1.0 / (factor * weight).abs()).collect()
 }

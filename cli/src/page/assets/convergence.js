@@ -19,12 +19,19 @@ function drawGrids(chart, all) {
   ctx.fillStyle = colour("muted");
   ctx.textAlign = "left";
   ctx.textBaseline = "alphabetic";
-  all.N.forEach((n, k) => {
-    if (n === all.N[k - 1]) return;
+  // Above the curves, from the last grid on, as far as there is room for their names.
+  let room = bbox.left + bbox.width + 24 * uPlot.pxRatio;
+  const first = all.N.map((_, k) => k).filter((k) => all.N[k] !== all.N[k - 1]);
+  for (const k of first.reverse()) {
     const place = chart.valToPos(k, "x", true);
     line(chart, [place, bbox.top, place, bbox.top + bbox.height], colour("muted"), 1, [2, 3]);
-    ctx.fillText(`N ${n}`, place + 4 * uPlot.pxRatio, bbox.top + 11 * uPlot.pxRatio);
-  });
+    const text = `N ${all.N[k]}`;
+    const { width } = ctx.measureText(text);
+    const left = Math.min(place, room - width);
+    if (place - left > width / 2) continue;
+    ctx.fillText(text, left, bbox.top - 5 * uPlot.pxRatio);
+    room = left - 8 * uPlot.pxRatio;
+  }
   ctx.restore();
 }
 
@@ -68,6 +75,7 @@ function drawConvergence(element) {
     {
       width: element.clientWidth,
       height,
+      padding: [20, 24, 0, 0],
       legend: { show: false },
       cursor: { y: false, drag: { x: false, y: false }, points: { show: false } },
       scales: { x: { time: false }, y: { distr: 3, range: () => range } },

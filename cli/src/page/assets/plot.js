@@ -15,7 +15,6 @@ function axis(more) {
   };
 }
 
-const ticks = (_, values) => values.map((value) => short(value));
 const timeAxis = (size = 24) =>
   axis({ label: page.time.label, labelSize: 18, size, gap: 3, values: ticks });
 
@@ -61,15 +60,18 @@ function annotate(chart, figure) {
   const right = bbox.left + bbox.width;
   const inside = (x) => Math.min(Math.max(x, bbox.left), right);
   const y = (value) => chart.valToPos(value / figure.unit.si, "y", true);
-  const x = (time) => inside(chart.valToPos(time / page.time.si, "x", true));
+  const place = (time) => inside(chart.valToPos(time / page.time.si, "x", true));
+  const x = (time) => (Number.isFinite(time) ? place(time) : time < 0 ? bbox.left : right);
   for (const limit of figure.limits) {
     const height = y(limit.value);
     if (height < bbox.top - 1 || height > bbox.top + bbox.height + 1) continue;
-    line(chart, [bbox.left, height, right, height], colour("limit"), 1, [5, 4]);
-    for (const strip of activeIn(figure)) {
-      for (const span of strip.spans.filter((span) => span.mode === limit.label)) {
-        line(chart, [x(span.from), height, x(span.to), height], colour("limit"), 4);
-      }
+    // That of a phase holds in it only.
+    const [first, last] = [limit.from ?? -Infinity, limit.to ?? Infinity];
+    line(chart, [x(first), height, x(last), height], colour("limit"), 1, [5, 4]);
+    const isOwn = (span) => span.mode === limit.label && span.from < last && span.to > first;
+    for (const span of activeIn(figure).flatMap((strip) => strip.spans.filter(isOwn))) {
+      const ends = [Math.max(span.from, first), Math.min(span.to, last)].map(x);
+      line(chart, [ends[0], height, ends[1], height], colour("limit"), 4);
     }
   }
   for (const mark of page.marks) {
@@ -77,6 +79,31 @@ function annotate(chart, figure) {
     if (place < bbox.left || place > right) continue;
     line(chart, [place, bbox.top, place, bbox.top + bbox.height], colour("muted"), 1, [2, 3]);
   }
+}
+
+/// The error bars of measurements, and lines from 0 to what remains of them.
+function drawBars(chart, curves) {
+  const { ctx, bbox } = chart;
+  ctx.save();
+  ctx.beginPath();
+  ctx.rect(bbox.left, bbox.top, bbox.width, bbox.height);
+  ctx.clip();
+  const vertical = (x, from, to, style) => {
+    const [a, b] = [from, to].map((it) => chart.valToPos(it, "y", true));
+    const place = chart.valToPos(x, "x", true);
+    line(chart, [place, a, place, b], style, 1);
+  };
+  for (const curve of curves.filter(isMeasured)) {
+    const style = inkOf(curve);
+    const [{ x, y, bars }] = curve.pieces;
+    if (curve.kind === "stems") {
+      const zero = chart.valToPos(0, "y", true);
+      line(chart, [bbox.left, zero, bbox.left + bbox.width, zero], colour("muted"), 1);
+      x.forEach((it, k) => vertical(it, 0, y[k], style));
+    }
+    bars?.forEach(([low, high], k) => vertical(x[k], low, high, style));
+  }
+  ctx.restore();
 }
 
 /// The values at the cursor, in the caption of each plot and above all of them.
@@ -94,10 +121,11 @@ function tell(chart, curves, output, unit) {
 
 /// What a plot shows, for who cannot see it.
 function inWords(figure, curves, range) {
-  const values = curves.flatMap((curve) => curve.pieces.flatMap((piece) => piece.y));
+  const lines = curves.filter((curve) => curve.kind !== "points");
+  const values = lines.flatMap((curve) => curve.pieces.flatMap((piece) => piece.y));
   const name = `${figure.name} over ${page.time.name}`;
   if (!values.length) return `${name}: no values`;
-  if (range.isFlat) return `${name}: constant, ${short(values[0])} ${figure.unit.name}`;
+  if (range.isFlat) return `${name}: constant, ${short(range.middle)} ${figure.unit.name}`;
   const low = values.reduce((a, b) => Math.min(a, b));
   const high = values.reduce((a, b) => Math.max(a, b));
   const [first, last] = [values[0], values[values.length - 1]].map((it) => short(it));
@@ -110,7 +138,14 @@ const STYLES = {
   replay: () => uPlot.paths.linear(),
 };
 
+/// Measurements are dark, or have the colour of their document where there are several.
+const inkOf = (curve) => colour(solutions.length > 1 ? `curve-${curve.of}` : "ink");
+
 function seriesOf(curve) {
+  if (isMeasured(curve)) {
+    const [stroke, fill] = [0, 1].map(() => () => inkOf(curve));
+    return [{ stroke, width: 0, paths: () => null, points: { show: true, size: 5, width: 0, fill, stroke } }];
+  }
   const isReplay = curve.kind === "replay";
   const own = { width: isReplay ? 1.5 : 2, points: { show: false }, paths: STYLES[curve.kind]() };
   const hue = curve.hue === undefined ? curve.of : curve.hue % 8;
@@ -127,12 +162,15 @@ const sync = { key: "time", scales: ["x", null] };
 
 /// Draws a figure into its element.
 function plot(figure, element) {
-  const curves = figure.curves.map((curve) => ({ ...curve, pieces: pieces(curve, figure.unit) }));
+  const read = (curve) => (isMeasured(curve) ? [measurements(curve, figure.unit)] : pieces(curve, figure.unit));
+  const curves = figure.curves.map((curve) => ({ ...curve, pieces: read(curve) }));
   const tables = curves.flatMap((curve) => curve.pieces.map((piece) => [piece.x, piece.y]));
   if (!tables.length) return;
   const output = element.parentElement.querySelector("output");
-  const values = tables.flatMap((table) => table[1]);
-  const range = rangeOf(values, figure.limits.map((limit) => limit.value / figure.unit.si));
+  const bars = curves.flatMap((curve) => curve.pieces.flatMap((piece) => (piece.bars ?? []).flat()));
+  const values = tables.flatMap((table) => table[1]).concat(bars);
+  const limits = figure.limits.map((limit) => limit.value / figure.unit.si);
+  const range = rangeOf(values, limits, figure.rounding / figure.unit.si);
   element.setAttribute("role", "img");
   element.setAttribute("aria-label", inWords(figure, curves, range));
   const chart = new uPlot(
@@ -146,7 +184,7 @@ function plot(figure, element) {
       series: [{}, ...curves.flatMap(seriesOf)],
       hooks: {
         drawClear: [shade],
-        draw: [(own) => annotate(own, figure)],
+        draw: [(own) => annotate(own, figure), (own) => drawBars(own, curves)],
         setCursor: [(own) => tell(own, curves, output, figure.unit.name)],
       },
     },

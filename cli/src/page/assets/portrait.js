@@ -16,7 +16,7 @@ function toScale(x, y, width, height) {
 
 /// The points of two figures at the same times, a list for each piece of each curve.
 function paired(over, of) {
-  return over.curves.flatMap((curve) => {
+  return over.curves.filter((curve) => !isMeasured(curve)).flatMap((curve) => {
     // Of several phases each has curves of its own.
     const place = (it) => it.values.slice(0, -2).join();
     const isSame = (it) => it.of === curve.of && it.kind === curve.kind && place(it) === place(curve);
@@ -56,8 +56,11 @@ function drawEnds(chart, paths) {
       ctx.stroke();
       ctx.restore();
     };
-    if (paths[at - 1]?.curve !== curve) dot(0, true);
-    if (paths[at + 1]?.curve !== curve) dot(x.length - 1, false);
+    // Phases are one after the other; a replay begins where the plan does.
+    const isSame = (it) => it && ["of", "kind", "hue"].every((key) => it.curve[key] === curve[key]);
+    const own = paths.filter(isSame);
+    if (curve.kind !== "replay" && own[0] === paths[at]) dot(0, true);
+    if (own[own.length - 1] === paths[at]) dot(x.length - 1, false);
   });
 }
 
@@ -90,7 +93,7 @@ function drawBorders(chart, segments) {
 function drawNow(chart, over, of, time) {
   const { ctx } = chart;
   for (const figure of of) {
-    for (const curve of figure.curves.filter((it) => it.kind !== "replay")) {
+    for (const curve of figure.curves.filter((it) => it.kind !== "replay" && !isMeasured(it))) {
       const other = over.curves.find((it) => it.of === curve.of && it.kind !== "replay");
       const [x, y] = [[other, over], [curve, figure]].map(([it, { unit }]) =>
         valueAt({ ...it, pieces: pieces(it, unit) }, time),
@@ -110,7 +113,8 @@ function drawPortrait(element, over, of, isToScale, more = {}) {
   const hued = (path, hue) => ({ ...path, curve: of.length > 1 ? { ...path.curve, hue } : path.curve });
   const paths = of.flatMap((figure, hue) => paired(over, figure).map((path) => hued(path, hue)));
   const height = Math.round(Math.min(Math.max(element.clientWidth * 0.55, 260), 560));
-  let [x, y] = ["x", "y"].map((key) => rangeOf(paths.flatMap((path) => path[key]), []));
+  const rounding = { x: over.rounding / over.unit.si, y: of[0].rounding / of[0].unit.si };
+  let [x, y] = ["x", "y"].map((key) => rangeOf(paths.flatMap((path) => path[key]), [], rounding[key]));
   if (more.borders?.length) [x, y] = [x, y].map(widened);
   if (isToScale) [x, y] = toScale(x, y, element.clientWidth - AXIS, height - 40);
   element.replaceChildren();
@@ -154,12 +158,28 @@ function drawPortrait(element, over, of, isToScale, more = {}) {
 function portrait(element) {
   const figures = choices();
   const [over, of, isToScale] = ["over", "of", "to-scale"].map((id) => document.getElementById(id));
-  const option = (figure, at) => new Option(figure.name, at);
-  [over, of].forEach((list) => list.replaceChildren(...figures.map(option)));
-  const first = figures.findIndex((figure) => figure.name.endsWith(".x"));
-  over.value = Math.max(first, 0);
-  of.value = Math.max(first, 0) + 1;
-  isToScale.checked = first >= 0;
+  const titled = (figure) => {
+    const isAlone = figures.filter((it) => it.name === figure.name).length === 1;
+    return isAlone ? figure.name : `${figure.name} [${figure.unit.name || "1"}]`;
+  };
+  const fill = (list, all) =>
+    list.replaceChildren(...all.map((figure) => new Option(titled(figure), figures.indexOf(figure))));
+  const partners = (figure) => figures.filter((it) => it !== figure && paired(figure, it).length);
+  const overs = figures.filter((figure) => partners(figure).length);
+  fill(over, overs);
+  const first = overs.find((figure) => figure.name.endsWith(".x"));
+  over.value = figures.indexOf(first ?? overs[0]);
+  isToScale.checked = first !== undefined;
+  // Two solutions may have a signal each that the other has not.
+  const offer = () => {
+    const [all, before] = [partners(figures[over.value]), of.value];
+    fill(of, all);
+    const next = all.find((figure) => figures.indexOf(figure) > over.value) ?? all[0];
+    const isThere = all.includes(figures[before]);
+    of.value = isThere ? before : figures.indexOf(next);
+  };
+  offer();
+  over.addEventListener("change", offer);
   let own;
   const draw = () => {
     if (own) {

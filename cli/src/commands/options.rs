@@ -104,8 +104,8 @@ pub struct Options {
     /// Print the result as one JSON document, and nothing else, on the standard output
     #[arg(long)]
     pub json: bool,
-    /// Write MODEL.sol.json, MODEL.csv and MODEL.html to this folder; a sweep writes its rows there,
-    /// and a page of them
+    /// Write MODEL.sol.json, MODEL.csv and MODEL.html to this folder; a sweep writes its rows and a
+    /// page of them there
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Start from an earlier .sol.json; its N, scheme and sigma may be others

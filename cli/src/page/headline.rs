@@ -1,10 +1,11 @@
 //! What is certain of a solution and what is not, in sentences.
 
 use super::json::{Json, NULL};
+use super::located::{all_located, is_smooth};
 use super::runs;
 use super::units::{of_condition, of_time, of_value};
 use super::unsolved;
-use crate::output::certificate::{all_missed, located, system};
+use crate::output::certificate::{all_missed, system};
 use crate::output::number::{scientific, significant};
 use crate::output::plural;
 use fdcc::names;
@@ -85,24 +86,6 @@ pub fn title(document: &Json) -> String {
         }
         _ => format!("{found} of the {of} problem, {and}"),
     }
-}
-
-/// How many switches and jumps were located.
-fn all_located(document: &Json) -> String {
-    let switches = document.at("certificate").at("switches").list().iter();
-    let switch = |it| {
-        let time = Json::at(it, "time").number().unwrap_or(f64::NAN);
-        (it.at("surface").text(), time, it.at("to").text())
-    };
-    located(&switches.map(switch).collect::<Vec<_>>(), document.at("jumps").list().len())
-}
-
-/// Whether nothing switches and nothing jumps.
-fn is_smooth(document: &Json) -> bool {
-    let switches = |it: &Json| !it.at("surfaces").pairs().is_empty();
-    let phases = document.at("phases").pairs();
-    let is_any = switches(document) || phases.iter().any(|(_, it)| switches(it));
-    !is_any && document.at("jumps").list().is_empty()
 }
 
 fn smoothed(document: &Json) -> bool {

@@ -11,6 +11,7 @@ pub mod figures;
 mod gradient;
 mod headline;
 pub mod json;
+mod located;
 mod measured;
 pub mod notebook;
 pub mod pdf;

@@ -264,6 +264,27 @@ fn a_located_optimum_has_exact_sensitivities() {
     }
 }
 
+/// `J = (1 - |a|)^2` has a kink at `a = 0`, and `(1 - a |a|)^2` has none.
+#[test]
+fn a_parameter_on_a_kink_has_no_sensitivity() {
+    for (drift, a, expected) in [
+        ("abs(a)", 0.0, f64::NAN),
+        ("max(a, 0) + max(-a, 0)", 0.0, f64::NAN),
+        ("abs(a)", 0.1, -1.8),
+        ("a*abs(a)", 0.0, 0.0),
+    ] {
+        let text = format!(
+            "param a = {a} time t in [0, 1] state x start 0 control u end x == 1
+             dynamics {{ x' = u + {drift} }} minimize integral(u^2)"
+        );
+        let model = Model::from_text("drift", &text).expect("it has no mistakes");
+        let solution = model.solve(&Options::default()).expect("it can be solved");
+        let (_, found) = solution.sensitivities()[0];
+        let is_right = (found - expected).abs() < 1e-7 || found.is_nan() && expected.is_nan();
+        assert!(is_right, "{drift} at {a}: {found} instead of {expected}");
+    }
+}
+
 /// Where the objective is maximised, all signs are others.
 #[test]
 fn a_maximum_is_certified_alike() {

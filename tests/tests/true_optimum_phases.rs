@@ -28,6 +28,29 @@ fn models(folder: &str) -> Vec<(String, String)> {
     paths.into_iter().map(read).collect()
 }
 
+/// Where a phase is divided, those behind it stand elsewhere, with other numbers of states. The
+/// middle phase is passed at `v = y`: `T = (3 - y + y^2)/(2 y)`, and `y = 1` is the bound.
+#[test]
+fn phases_of_several_sizes_are_divided() {
+    let driven = "control u in [-1, 1] dynamics { x' = v  v' = u  w' = u }";
+    let text = format!(
+        "model sizes
+         free T in [0.5, 5] guess 2
+         phase a {{ time t in [0, T] state x start 0 state v in [0, 1] start 0 state w start 0
+           {driven} }}
+         phase b {{ time t in [T, T + 1] state x state v dynamics {{ x' = v  v' = 0 }} }}
+         phase c {{ time t in [T + 1, 2*T + 1] state x state v in [0, 1] state w start 0 {driven} }}
+         link a -> b {{ same }}
+         link b -> c {{ same }}
+         end c.x == 3
+         end c.v == 0
+         minimize T + 0.1*c.w(end)^2"
+    );
+    let solution = solved(&text);
+    let objective = solution.objective();
+    assert!(solution.is_certified() && (objective - 1.6).abs() < 1e-8, "{objective}");
+}
+
 /// Closed forms, and `tests/peers/phases_friction.py`, are in what each model expects.
 #[test]
 fn switches_are_located_in_every_phase() {

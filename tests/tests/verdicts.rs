@@ -80,6 +80,44 @@ fn an_indefinite_form_is_not_called_convex_and_its_saddle_is_left() {
     }
 }
 
+/// What a quantity gains that is small for the others: a barrier that is worth more keeps it in the
+/// middle of its bounds, where it is a maximum. `J = -4e-12` and `-4e-10`, at both bounds of `p`.
+#[test]
+fn a_saddle_that_the_barrier_hides_is_left() {
+    let at_a_saddle = |controls: &str, objective: &str| {
+        format!(
+            "time t in [0, 1] [s] state x [m] start 0 {controls} dynamics {{ x' = 1[1/s]*w }}
+             minimize {objective} method {{ N = 10 }}"
+        )
+    };
+    let apart = "control p [um] in [-2, 2] control w [m] in [-1, 1]";
+    let alike = "control p [m] in [-2, 2] control w [m] in [-1, 1]";
+    for (controls, objective, least) in [
+        (apart, "integral(w^2 - p^2)", -4e-12),
+        (apart, "x(end)^2 - integral(p^2)/1[s]", -4e-12),
+        (alike, "integral(w^2 - 1e-10*p^2)", -4e-10),
+        (alike, "integral(w^2 - 1e-12*p^2)", -4e-12),
+    ] {
+        let text = at_a_saddle(controls, objective);
+        assert_solved(&text, &solved(&text), least);
+    }
+}
+
+/// Nothing is least: what is left of it falls with the barrier, and has no size of its own.
+#[test]
+fn an_objective_that_is_zero_in_the_end_is_solved() {
+    for objective in ["integral(u)", "integral(u) + x(end)", "x(end)", "integral(x)"] {
+        let text = format!(
+            "time t in [0, 2] state x start 0 control u in [0, 1] dynamics {{ x' = u - x }}
+             minimize {objective}"
+        );
+        let found = fdcc::Model::from_text("rest", &text).expect("it has no mistakes");
+        let found = found.solve(&fdcc::Options::default()).expect("it can be solved");
+        let value = found.objective();
+        assert!(found.is_certified() && value.abs() < 1e-12, "{text}: {value}");
+    }
+}
+
 /// At the guess the gradient is exactly 0.
 #[test]
 fn a_guess_on_a_saddle_is_left() {

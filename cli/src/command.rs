@@ -1,13 +1,13 @@
 //! The command line as it was given, for who runs it again. It is in the documents of runs, so it
 //! is without what does not change them: where they are written, how much is told meanwhile, how
-//! many solves run at a time.
+//! many solves run at a time, in which of several processes.
 
 use std::sync::OnceLock;
 
 static GIVEN: OnceLock<Vec<String>> = OnceLock::new();
 
 /// Options with a value that change no result.
-const WITH_VALUE: [&str; 3] = ["--out", "--log", "--jobs"];
+const WITH_VALUE: [&str; 4] = ["--out", "--log", "--jobs", "--part"];
 
 /// Remembers the arguments behind the name of the program.
 pub fn remember(arguments: impl Iterator<Item = String>) {
@@ -56,7 +56,8 @@ mod tests {
 
     #[test]
     fn what_changes_no_result_is_left_out() {
-        let given = "solve a.fdc --set m=2 --out r --json --log=none --warm b.sol.json --jobs 2";
+        let given =
+            "solve a.fdc --set m=2 --out r --json --log=none --warm b.sol.json --jobs 2 --part 1/2";
         let kept = kept(given.split(' ').map(str::to_owned));
         assert_eq!(kept, ["solve", "a.fdc", "--set", "m=2", "--warm", "b.sol.json"]);
     }

@@ -9,7 +9,7 @@ use crate::output::gradient::GradientDocument;
 use crate::output::{self, files};
 use crate::page;
 use clap::Args;
-use fdcc::{By, Controls, Gradient, Model, NotBy, by_names};
+use fdcc::{Accuracy, By, Controls, Gradient, Model, NotBy, by_names};
 use fdcc_grammar::{Severity, SourceFile};
 use fdcc_runtime::simulate::System;
 use std::path::PathBuf;
@@ -78,7 +78,7 @@ impl Grad {
         let controls = self.driven.controls(driver, &system)?;
         let by = self.by(&system, &controls, &model)?;
         let has_second = self.second(&by)?;
-        let accuracy = self.driven.options(&model);
+        let accuracy = Accuracy { points_between: true, ..self.driven.options(&model) };
         let gradient = Gradient::new(&model, system, controls, by, &accuracy);
         let of = self.of.as_deref().unwrap_or("objective");
         let document = GradientDocument::new(of, &gradient, has_second, &model);

@@ -181,7 +181,7 @@ impl Run<'_> {
         if !is_retried(&found.status) {
             return found;
         }
-        let wider = self.from_wider(nlp, start.clone(), watch);
+        let wider = self.begun_wider(nlp, start.clone(), watch);
         if !is_retried(&wider.status) {
             return wider;
         }
@@ -190,7 +190,7 @@ impl Run<'_> {
     }
 
     /// From layers on both sides of which something changes, wherever the guess is, to these.
-    fn from_wider(&mut self, nlp: &mut ChainNlp, mut start: Start, watch: &mut Watch) -> Solution {
+    fn begun_wider(&mut self, nlp: &mut ChainNlp, mut start: Start, watch: &mut Watch) -> Solution {
         let widths = self.sigma.clone();
         let rough = Target { tol: self.target().tol.max(ROUGH), ..self.patience() };
         for factor in WIDER {

@@ -84,7 +84,9 @@ def _line(solution: Any, name: str, signal: Any) -> Line:
     nodes = solution._control_nodes
     if own in solution.controls and nodes:
         time, values = np.asarray(nodes.time), np.asarray(nodes["values"][own])
-        changes = [it.time for it in (*solution._jumps, *solution.switches)]
+        found = solution.certificate
+        switches = found.switches if found and found.certified else ()
+        changes = [it.time for it in (*solution._jumps, *switches)]
         gaps = np.searchsorted(time, changes)
         return Line(np.insert(time, gaps, np.nan), np.insert(values, gaps, np.nan), signal.unit)
     return Line(solution.time, signal, getattr(signal, "unit", ""))

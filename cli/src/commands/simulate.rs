@@ -19,7 +19,8 @@ use std::path::PathBuf;
 pub struct Simulate {
     #[command(flatten)]
     driven: Driven,
-    /// Report the states at these times, in the unit of time, instead of at all steps
+    /// Report the states at these times, in the unit of time, instead of at all steps and between
+    /// long ones
     #[arg(long, value_name = "T1,T2,...", value_delimiter = ',', allow_hyphen_values = true)]
     times: Vec<f64>,
     /// Print the result as one JSON document, and nothing else, on the standard output

@@ -225,7 +225,8 @@ class Model:
             held for an equal part of the time, or from the time in the entry ``t`` on, with an
             array for a vector, whose last axis is its parts; the guess of the model if left out.
         t
-            When states are reported, ascending and in SI; at all steps if left out.
+            When states are reported, ascending and in SI; at all steps and between long ones, if
+            left out.
         rtol
             The relative tolerance of one step; 1e-10 if left out.
         time_limit

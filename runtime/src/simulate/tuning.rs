@@ -268,6 +268,8 @@ pub(crate) mod between {
     pub(crate) const STRAIGHT: f64 = 0.002;
     /// It is looked at these parts of its length: a curve may cross it in the middle.
     pub(crate) const SEEN: [f64; 2] = [0.25, 0.75];
+    /// With so many numbers a picture has all that can be seen, and steps alone are noted.
+    pub(crate) const ENOUGH: usize = 1_000_000;
     /// Halves of halves of one step.
     pub(crate) const MOST_HALVINGS: usize = 8;
 }

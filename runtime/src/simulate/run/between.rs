@@ -3,13 +3,14 @@
 
 use super::Run;
 use crate::simulate::steps::Step;
-use crate::simulate::tuning::between::{MOST_HALVINGS, SEEN, STRAIGHT};
+use crate::simulate::tuning::between::{ENOUGH, MOST_HALVINGS, SEEN, STRAIGHT};
 
 impl Run<'_> {
     /// Notes points inside of the first `part` of a step, so many that straight lines between all
     /// points follow the states.
     pub fn note_between(&mut self, step: &Step, part: f64) {
-        if !self.options.points_between || !self.options.times.is_empty() {
+        let is_asked = self.options.points_between && self.options.times.is_empty();
+        if !is_asked || self.record.size() > ENOUGH {
             return;
         }
         let ends = [0.0, part].map(|theta| step.at(theta));

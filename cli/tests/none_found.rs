@@ -111,3 +111,20 @@ fn the_page_tells_how_near_it_comes_and_where_it_is_off() {
     assert!(page.contains("With all else met, “") && page.contains(near), "{page}");
     assert!(page.contains("The largest violation is that of"), "{page}");
 }
+
+/// Friction brings a smoothed block near to rest; one that cannot be moved rests, and something else
+/// stands in the way.
+#[test]
+fn what_only_friction_brings_to_rest_is_told_where_that_is_in_the_way() {
+    let slides = "time t in [0, 1.59]\nstate v start 1\nsurface slip = v\n\
+                  dynamics { v' in -Sgn(slip) }\nend v == 0\nmethod { sigma = 0.1 }\n";
+    let stuck = "time t in [0, 2]\nstate x start 0\nstate v start 0\ncontrol F in [-1, 1]\n\
+                 surface slip = v\ndynamics { x' = v  v' in F - 3*Sgn(slip) }\n\
+                 end x == 1\nend v == 0\nmethod { sigma = 1e-3 }\n";
+    let models = [("slides.fdc", slides.as_bytes()), ("stuck.fdc", stuck.as_bytes())];
+    let folder = folder("rests", &models);
+    let told = |file: &str| stdout(&fdcc(&folder, &["solve", file, "--log", "none"], ""));
+    let is_told = |file: &str| told(file).contains("\n rest  `slip` has to be 0 at the end");
+    assert!(is_told("slides.fdc"), "{}", told("slides.fdc"));
+    assert!(!is_told("stuck.fdc"), "{}", told("stuck.fdc"));
+}

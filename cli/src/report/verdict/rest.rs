@@ -5,7 +5,7 @@ use crate::output::units::Units;
 use crate::solved::Solved;
 use fdcc::Solution;
 use fdcc_runtime::nlp::Status;
-use fdcc_runtime::problem::{Columns, Problem};
+use fdcc_runtime::problem::{Bounds, Columns, Problem};
 use fdcc_runtime::solution::Trajectory;
 
 /// Only a condition makes the function of a surface this small, relative to its layer.
@@ -32,12 +32,17 @@ fn of(solution: &Solution, units: &Units) -> Vec<String> {
     let Some(ends) = is_open.then(|| misses(problem, &outcome.trajectory)) else {
         return Vec::new();
     };
+    // What stands against the equations most may be another condition: then that is in the way.
+    let limiting = outcome.limiting.as_ref().and_then(|it| it.condition.as_ref());
+    let is_in_the_way = |row: usize| limiting.is_none_or(|it| *it == problem.boundary.origin(row));
     let surfaces = problem.surfaces.iter().zip(&outcome.trajectory.switching).zip(&outcome.sigma);
     let asked = surfaces.filter(|((_, psi), sigma)| {
         let last = psi.last().map_or(0.0, |value| value.abs());
         last > 0.0
             && last <= NOTHING * **sigma
-            && ends.iter().any(|miss| (miss - last).abs() <= 1e-6 * last)
+            && ends
+                .iter()
+                .any(|(row, miss)| (miss - last).abs() <= 1e-6 * last && is_in_the_way(*row))
     });
     asked.map(|((surface, _), sigma)| line(&surface.name, *sigma, units)).collect()
 }
@@ -56,8 +61,8 @@ fn line(name: &str, sigma: f64, units: &Units) -> String {
     )
 }
 
-/// By how much each end condition that is an equation is missed.
-fn misses(problem: &Problem, trajectory: &Trajectory) -> Vec<f64> {
+/// The outputs of the boundary that are equations, each with how much it is missed by.
+fn misses(problem: &Problem, trajectory: &Trajectory) -> Vec<(usize, f64)> {
     let states = &trajectory.states;
     let mut points = Columns::new(2 * states.len(), 1);
     let ends = states
@@ -69,5 +74,6 @@ fn misses(problem: &Problem, trajectory: &Trajectory) -> Vec<f64> {
     problem.boundary.value(&points, &trajectory.parameters, &mut values);
     let rows =
         problem.boundary_bounds.iter().enumerate().filter(|(_, bounds)| bounds.is_equality());
-    rows.map(|(row, bounds)| (values.column(row + 1)[0] - bounds.lower).abs()).collect()
+    let miss = |row: usize, bounds: &Bounds| (values.column(row)[0] - bounds.lower).abs();
+    rows.map(|(row, bounds)| (row + 1, miss(row + 1, bounds))).collect()
 }

@@ -112,8 +112,8 @@ fn the_page_tells_how_near_it_comes_and_where_it_is_off() {
     assert!(page.contains("The largest violation is that of"), "{page}");
 }
 
-/// Friction brings a smoothed block near to rest; one that cannot be moved rests, and something else
-/// stands in the way.
+/// Friction brings a smoothed block near to rest; one that cannot be moved rests, and something
+/// else stands in the way.
 #[test]
 fn what_only_friction_brings_to_rest_is_told_where_that_is_in_the_way() {
     let slides = "time t in [0, 1.59]\nstate v start 1\nsurface slip = v\n\

@@ -258,6 +258,12 @@ fn kinks_of_parameters_alone_are_seen() {
             0.0,
             "time t in [0, 1] state x start 1 dynamics { x' = x } minimize integral(x*abs(a))",
         ),
+        (
+            "a",
+            0.0,
+            "time t in [0, 1] state x start 1 dynamics { x' = max(a, 0) + min(a, 0) }
+             minimize x(end)",
+        ),
     ];
     for (name, place, text) in texts {
         for (value, is_on) in [(place, true), (place + 0.1, false), (place - 0.1, false)] {

@@ -183,3 +183,26 @@ fn levels_of_a_thermostat_are_found_from_the_motion_of_their_guess() {
     let expected = [("objective", 4.859_435_777_32), ("hi", 21.079_187_7), ("lo", 18.860_812_3)];
     assert_near(&solution, &expected, 5e-8);
 }
+
+/// A block that slides throughout: its surface is there, and nothing switches. `x = 2 t - t^2/4` is
+/// measured, to 0.01 above and below in turn.
+#[test]
+fn a_fit_without_any_switch_has_estimates() {
+    let rows = (0..=20).map(|row| {
+        let (t, side) = (0.05 * f64::from(row), if row % 2 == 0 { 0.01 } else { -0.01 });
+        format!("{t},{}\n", 2.0 * t - 0.25 * t * t + side)
+    });
+    let rows: String = rows.collect();
+    let text = "data obs = csv(\"a.csv\") columns t, x
+        free a in [0, 2] guess 0.3  free v0 in [0, 5] guess 1
+        time t in [0, 1]  state x start 0  state v start v0  surface slip = v
+        dynamics { x' = v  v' in -a*Sgn(slip) }  fit obs: x sd 0.01";
+    let solution = certified(&with_data(text, move |_| format!("t,x\n{rows}")));
+    let estimates = solution.estimates().expect("it is a fit");
+    assert_eq!((estimates.rows, estimates.residuals[0].values.len()), (21, 21));
+    let off = |name: &str, value: f64| {
+        let it = estimates.unknowns.iter().find(|it| it.name == name).expect("it is unknown");
+        (it.value - value).abs() / it.standard_error.expect("it is determined")
+    };
+    assert!(off("a", 0.5) < 1.0 && off("v0", 2.0) < 1.0, "{:?}", estimates.unknowns);
+}

@@ -271,6 +271,7 @@ fn a_parameter_on_a_kink_has_no_sensitivity() {
         ("abs(a)", 0.0, f64::NAN),
         ("max(a, 0) + max(-a, 0)", 0.0, f64::NAN),
         ("abs(a)", 0.1, -1.8),
+        ("min(abs(a), 1)", 0.0, f64::NAN),
         ("a*abs(a)", 0.0, 0.0),
     ] {
         let text = format!(

@@ -26,12 +26,14 @@ fn of_one(model: &Model) -> HashSet<usize> {
     let mut found = HashSet::new();
     let Ok(numbers) = numbers(model) else { return found };
     let mut graph = model.graph.clone();
-    let (tried, rewritten) = replaced(&mut graph, model.symbols.len(), &roots(model));
+    let (tried, mut readers) = replaced(&mut graph, model.symbols.len(), &roots(model));
+    // What is inside of another kink is read by that.
+    readers.extend(tried.iter().map(|it| it.e));
     for it in &tried {
         let Some(kink) = Kink::of(&mut graph, it.original, it.original) else { continue };
         let Some(parameters) = parameters_of(model, &graph, kink.e) else { continue };
         let is_met = is_zero(&mut graph, kink.e, &numbers);
-        if is_met && rewritten.iter().any(|root| is_bent(&mut graph, *root, it)) {
+        if is_met && readers.iter().any(|root| is_bent(&mut graph, *root, it)) {
             found.extend(parameters);
         }
     }
@@ -43,6 +45,11 @@ fn roots(model: &Model) -> Vec<ExprId> {
     let both = |range: &Range| [range.lower, range.upper];
     let mut roots = super::roots(model);
     roots.extend(model.interval);
+    roots.extend(model.params.iter().flat_map(|it| it.value));
+    let links = model.links.iter();
+    roots.extend(
+        links.flat_map(|it| it.objective.into_iter().chain(it.rows.iter().map(|row| row.value))),
+    );
     roots.extend(model.states.iter().flat_map(|it| it.start));
     roots.extend(model.states.iter().flat_map(|it| both(&it.range)));
     roots.extend(model.controls.iter().flat_map(|it| both(&it.range)));

@@ -172,10 +172,12 @@ impl Solution {
     /// Those of one phase of the model. Where switches divide its time each part of it has the same
     /// signals.
     fn residuals_over_time(&self, phase: Option<&str>) -> (Vec<Residual>, bool) {
-        let parts = self.between_jumps.as_ref().filter(|it| !it.model.phases.is_empty());
-        let Some(Phases { model, chain, outcome }) = parts else {
+        let Some(Phases { model, chain, outcome }) = &self.between_jumps else {
             return of_phase(self.model().meaning(), &self.problem, &self.outcome, phase);
         };
+        if model.phases.is_empty() {
+            return of_phase(model, &chain.phases[0], &outcome.phases[0], phase);
+        }
         let parts = model.phases.iter().zip(&chain.phases).zip(&outcome.phases);
         let parts = parts.map(|((it, problem), own)| of_phase(&it.model, problem, own, phase));
         parts.reduce(followed).unwrap_or_default()

@@ -8,6 +8,13 @@ use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser};
 use crate::simulate::{Piece, Tape};
 use std::ops::Range;
 
+/// A second distance, for comparison, and the part of a difference that stays there.
+const NEARER: f64 = 16.0;
+const STAYS: f64 = 0.5;
+
+/// What is less than this part of the terms is rounding.
+const UNKNOWN: f64 = 1e-12;
+
 /// The first kink that one of these parameters is on: of the times, of the starts, of a surface
 /// where a regime begins, or of the right side where a step begins.
 pub(crate) fn parameter_kink(
@@ -19,12 +26,21 @@ pub(crate) fn parameter_kink(
     let nothing = Columns::new(0, 1);
     let fixed = [(&system.interval_of, nothing.clone()), (&system.start_of, nothing)];
     let watched = begins(lineariser, tape).into_iter().map(|point| (&system.switching, point));
-    let flows = steps_on_kinks(lineariser, tape, parameters).map(|point| (&system.flow, point));
-    fixed.into_iter().chain(watched).chain(flows).find_map(|(function, point)| {
+    let others = fixed.into_iter().chain(watched).find_map(|(function, point)| {
         let of = |parameter: &usize| output_with_kink(&**function, &point, lineariser, *parameter);
         let output = parameters.iter().find_map(of)?;
-        Some(Kink { of: function.origin(output), met: KinkMet::ByParameters })
-    })
+        Some(function.origin(output))
+    });
+    let of_flow = || {
+        steps_on_kinks(lineariser, tape, parameters).find_map(|point| {
+            let of = |parameter: &usize| {
+                let bent = output_with_kink(&*system.flow, &point, lineariser, *parameter);
+                bent.or_else(|| output_of_one_side(&*system.flow, &point, lineariser, *parameter))
+            };
+            Some(system.flow.origin(parameters.iter().find_map(of)?))
+        })
+    };
+    others.or_else(of_flow).map(|of| Kink { of, met: KinkMet::ByParameters })
 }
 
 /// Where the first steps of all regimes begin.
@@ -83,6 +99,36 @@ fn output_with_kink(
     };
     let terms = terms_of(function, point, &lineariser.parameters);
     first_with_kink(lineariser.parameters[parameter], 0..function.outputs(), &terms, values)
+}
+
+/// The first output of a function at a point whose derivative by a parameter is that of neither
+/// side: kinks that cancel, as those of `max(a, 0) + min(a, 0)`, are on one side each.
+fn output_of_one_side(
+    function: &dyn Function,
+    point: &Columns,
+    lineariser: &Lineariser,
+    parameter: usize,
+) -> Option<usize> {
+    let distance = distance_from(lineariser.parameters[parameter]);
+    let moved = |by: f64| {
+        let mut parameters = lineariser.parameters.clone();
+        parameters[parameter] += by;
+        values_of(function, point, &parameters)
+    };
+    let both = |distance: f64| [moved(-distance), moved(distance)];
+    let (far, near) = (both(distance), both(distance / NEARER));
+    let terms = terms_of(function, point, &lineariser.parameters);
+    let column = function.layout().parameters().start + parameter;
+    let by = Jacobian::of(function, point, &lineariser.parameters).by;
+    (0..function.outputs()).find(|&output| {
+        let gap = |[below, above]: &[Vec<f64>; 2], distance: f64| {
+            (by[(output, column)] - (above[output] - below[output]) / (2.0 * distance)).abs()
+        };
+        let [off, nearer] = [gap(&far, distance), gap(&near, distance / NEARER)];
+        let rounding = UNKNOWN * (terms[output] / distance).max(by[(output, column)].abs());
+        // One that is right is approached.
+        nearer > rounding && nearer > STAYS * off
+    })
 }
 
 /// The outputs of a function at a point.

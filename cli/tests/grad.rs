@@ -462,3 +462,15 @@ fn a_jump_on_a_kink_has_no_derivative_to_trust() {
         assert_eq!(said, is_kink, "{assigned}: {found}");
     }
 }
+
+/// `(q - p/4)^2` at q = 0.8, p = 2, of no state at all.
+#[test]
+fn a_model_without_states_has_a_gradient() {
+    let text = "param p = 2\nfree q in [0, 1] guess 0.8\ntime t in [0, 1]\nminimize (q - p/4)^2\n";
+    let folder = folder("grad_no_state", &[("still.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["grad", "still.fdc", "--json"], "");
+    expect_exit(&output, 0, "it has derivatives");
+    let by = &json(&output)["gradient"];
+    let of = |name: &str| by[name].as_f64().expect("a number");
+    assert!((of("p") + 0.15).abs() < 1e-12 && (of("q") - 0.6).abs() < 1e-12, "{by}");
+}

@@ -31,14 +31,15 @@ pub struct Stepped {
 
 impl Gradient {
     /// The gradient of the true system, discretised, by the numbers of `by`; nothing of models with
-    /// jumps, which fixed steps do not know.
+    /// jumps, which fixed steps do not know, or without states and integrals.
     ///
     /// # Errors
     ///
     /// A scheme whose steps do not go through a set, or steps that do not reach the end, in words.
     pub fn discretised(&self) -> Option<Result<Stepped, String>> {
         let stepped = || Ok(Stepped { sigma: None, gradient: self.stepped(&self.system)? });
-        self.system.jumps.is_empty().then(stepped)
+        let is_stepped = self.system.jumps.is_empty() && self.system.layout.x > 0;
+        is_stepped.then(stepped)
     }
 
     /// The same with the surfaces smoothed, as a solve has it; nothing of a model without surfaces.

@@ -282,7 +282,8 @@ fn kinks_of_parameters_alone_are_seen() {
 #[test]
 fn kinks_of_parameters_that_bend_nothing_are_none() {
     let text = "param a = 0 time t in [0, 1] state x start 1 state y start 0
-        dynamics { x' = a*abs(a)*x + max(a, 0)^2 y' = max(a, 0)*y } minimize x(end) + y(end)";
+        dynamics { x' = a*abs(a)*x + max(a, 0)^2 + 0.3*a + 1000.1 y' = max(a, 0)*y }
+        minimize x(end) + y(end)";
     let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
     let by = [parameter(&system, "a")];
     let found = gradient(&system, &Controls::Guess, &Options::default(), &by);

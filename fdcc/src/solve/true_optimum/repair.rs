@@ -88,10 +88,7 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongAr
     for (j, phase) in located.structure.phases.iter().enumerate() {
         let (problem, outcome) = (&located.chain.phases[j], &located.outcome.phases[j]);
         let slopes = control_slopes(problem, outcome);
-        // Of a motion that rests at no cost the terms are what the solver leaves.
-        let hamiltonian = &outcome.trajectory.hamiltonian;
-        let least = if hamiltonian.is_noise { hamiltonian.noise / WRONG_SIGN } else { 0.0 };
-        let size = hamiltonian.scale.max(least).max(f64::MIN_POSITIVE);
+        let size = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
         for (control, arc) in phase.arcs.iter().enumerate() {
             let ControlSlopes { least, largest, terms } = slopes[control];
             let wrong = match arc {

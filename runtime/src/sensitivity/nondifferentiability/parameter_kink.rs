@@ -12,8 +12,8 @@ use std::ops::Range;
 const NEARER: f64 = 16.0;
 const STAYS: f64 = 0.5;
 
-/// What is less than this part of the terms is rounding.
-const UNKNOWN: f64 = 1e-12;
+/// What is less than this part of the terms, and of the value, is rounding.
+const UNKNOWN: f64 = 5e-14;
 
 /// The first kink that one of these parameters is on: of the times, of the starts, of a surface
 /// where a regime begins, or of the right side where a step begins.
@@ -119,13 +119,14 @@ fn output_of_one_side(
     let (far, near) = (both(distance), both(distance / NEARER));
     let terms = terms_of(function, point, &lineariser.parameters);
     let column = function.layout().parameters().start + parameter;
-    let by = Jacobian::of(function, point, &lineariser.parameters).by;
+    let Jacobian { values, by } = Jacobian::of(function, point, &lineariser.parameters);
     (0..function.outputs()).find(|&output| {
         let gap = |[below, above]: &[Vec<f64>; 2], distance: f64| {
             (by[(output, column)] - (above[output] - below[output]) / (2.0 * distance)).abs()
         };
         let [off, nearer] = [gap(&far, distance), gap(&near, distance / NEARER)];
-        let rounding = UNKNOWN * (terms[output] / distance).max(by[(output, column)].abs());
+        let size = terms[output].max(values[output].abs());
+        let rounding = UNKNOWN * (size / distance).max(by[(output, column)].abs());
         // One that is right is approached.
         nearer > rounding && nearer > STAYS * off
     })

@@ -264,6 +264,18 @@ fn kinks_of_parameters_alone_are_seen() {
             "time t in [0, 1] state x start 1 dynamics { x' = max(a, 0) + min(a, 0) }
              minimize x(end)",
         ),
+        (
+            "a",
+            0.0,
+            "param b = max(a, 0) time t in [0, 1] state x start 1 dynamics { x' = b*x }
+             minimize x(end)",
+        ),
+        (
+            "a",
+            0.0,
+            "time t in [0, 1] state x start 1 control u in [-1, 1] dynamics { x' = u }
+             guess { u = 0.1 + max(a, 0) } minimize x(end)",
+        ),
     ];
     for (name, place, text) in texts {
         for (value, is_on) in [(place, true), (place + 0.1, false), (place - 0.1, false)] {

@@ -59,6 +59,7 @@ mod reference;
 mod refinement;
 mod rests_and_turns;
 mod right;
+mod saddles;
 mod scaling;
 mod section_two;
 mod section_two_page;

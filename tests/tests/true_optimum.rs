@@ -273,6 +273,9 @@ fn a_parameter_on_a_kink_has_no_sensitivity() {
         ("abs(a)", 0.1, -1.8),
         ("min(abs(a), 1)", 0.0, f64::NAN),
         ("a*abs(a)", 0.0, 0.0),
+        ("piecewise { a >= 0 => a  otherwise => 2*a }", 0.0, f64::NAN),
+        ("piecewise { a >= 0 => a  otherwise => 2*a }", 0.1, -1.8),
+        ("max(a*(1 + x^2), 0)", 0.0, f64::NAN),
     ] {
         let text = format!(
             "param a = {a} time t in [0, 1] state x start 0 control u end x == 1

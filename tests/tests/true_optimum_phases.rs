@@ -159,6 +159,51 @@ fn sensitivities_of_phases_are_exact() {
     assert!((slope / between - 1.0).abs() < 1e-5, "{slope} {between}");
 }
 
+/// A phase that begins held where the one before it ended, on a belt whose speed is a parameter, is
+/// worth what the same motion in one piece is; and that what two optima say.
+#[test]
+fn a_hold_goes_on_through_a_link() {
+    let motion = "surface slip = v - c control u in [-1, 1]
+        dynamics { x' = v  v' in u - 2*Sgn(slip) }";
+    let phases = format!(
+        "param c = 0.5 phase one {{ time t in [0, 1] state x start 0 state v start 1 {motion} }}
+         phase two like one {{ time t in [1, 2] }} link one -> two {{ same }}
+         minimize integral(one.u^2) + integral(two.u^2) + two.x(end)^2"
+    );
+    let whole = format!(
+        "param c = 0.5 time t in [0, 2] state x start 0 state v start 1 {motion}
+         minimize integral(u^2) + x(end)^2"
+    );
+    let at = |text: &str, c: f64| {
+        let model = Model::from_text("belt", text).expect("it is right");
+        let model = model.with("c", c).expect("it is a parameter");
+        let solution = model.solve(&Options::default()).expect("it is solved");
+        assert!(solution.is_certified(), "{:?}", solution.certificate);
+        (solution.objective(), solution.sensitivities()[0].1)
+    };
+    let [below, above] = [0.499, 0.501].map(|c| at(&phases, c).0);
+    let between = (above - below) / 0.002;
+    for text in [&phases, &whole] {
+        let slope = at(text, 0.5).1;
+        assert!((slope / between - 1.0).abs() < 1e-5, "{text}: {slope} {between}");
+    }
+}
+
+/// A ball that is set rolling at once: `2*(R w)^2/5 + v^2 = 7/5 36` whatever its radius is.
+#[test]
+fn a_chosen_start_follows_the_surface() {
+    let text = "param R = 0.108 free v0 in [0, 12] guess 7 free w0 in [-50, 80] guess 10
+        time t in [0, 3] state x start 0 state v start v0 state w start w0
+        surface slip = v - R*w
+        dynamics { x' = v  v' in -1.2*Sgn(slip)
+          R*w' in 3*Sgn(slip) }
+        end x == 18 minimize v0^2 + 0.4*(R*w0)^2";
+    let solution = solved(text);
+    assert!(solution.is_certified() && (solution.objective() - 50.4).abs() < 1e-7);
+    let slope = solution.sensitivities()[0].1;
+    assert!(slope.abs() < 1e-6, "{slope}");
+}
+
 /// The switch of `tests/classics/switched/ridge.fdc` is best at 2/3 and may come at any time: where
 /// it happens just where a phase ends nothing in the phases moves it, and that is no optimum.
 #[test]

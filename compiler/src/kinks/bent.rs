@@ -26,7 +26,8 @@ impl Bent {
     pub fn of(model: &Model) -> Self {
         let mut kinks = ById::default();
         let mut graph = model.graph.clone();
-        let (tried, rewritten) = replaced(&mut graph, model.symbols.len(), &roots(model));
+        let symbols = model.symbols.len();
+        let (tried, rewritten) = replaced(&mut graph, symbols, &roots(model), Kink::of);
         if tried.len() > MOST {
             return Bent { kinks };
         }
@@ -48,15 +49,19 @@ impl Bent {
     }
 }
 
+/// What an expression is as a kink, and what it has become; nothing of what is none.
+type AsKink = fn(&mut Graph, ExprId, ExprId) -> Option<Kink>;
+
 /// Roots with an input for each kink, behind the first `symbols`.
 pub(super) fn replaced(
     graph: &mut Graph,
     symbols: usize,
     roots: &[ExprId],
+    as_kink: AsKink,
 ) -> (Vec<Tried>, Vec<ExprId>) {
     let (mut tried, mut next) = (Vec::new(), symbols as u32);
     let rewritten = graph.rewrite(roots, |graph, original, rebuilt| {
-        let Some(kink) = Kink::of(graph, original, rebuilt) else { return rebuilt };
+        let Some(kink) = as_kink(graph, original, rebuilt) else { return rebuilt };
         let input = next;
         next += 1;
         tried.push(Tried { original, e: kink.e, input });

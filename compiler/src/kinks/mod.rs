@@ -118,6 +118,15 @@ impl Kink {
         Some(Kink { e, below, above, share })
     }
 
+    /// The same, and what `piecewise` is made of: what reads it changes with `q` if it is bent, or
+    /// jumps.
+    fn or_knot(graph: &mut Graph, original: ExprId, rebuilt: ExprId) -> Option<Kink> {
+        Kink::of(graph, original, rebuilt).or_else(|| {
+            let (e, [below, above]) = sides(graph, original, rebuilt)?;
+            (below != above).then_some(Kink { e, below, above, share: 1.0 })
+        })
+    }
+
     /// Its value where an unknown stands for `q`.
     fn with_unknown(&self, graph: &mut Graph, unknown: ExprId) -> ExprId {
         let part = graph.scale(self.share, unknown);

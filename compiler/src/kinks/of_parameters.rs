@@ -1,5 +1,5 @@
-//! Kinks that parameters alone move, such as that of `max(a, 0)`: where the value of a parameter is
-//! on one, an optimum has no derivative by it.
+//! Kinks that are met because of the values of parameters alone, such as that of `max(a, 0)` or of
+//! `max(a*x, 0)` at `a = 0`: an optimum has no derivative by these.
 
 use super::Kink;
 use super::bent::{is_bent, replaced};
@@ -7,7 +7,7 @@ use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph, evaluate};
 use crate::model::numbers::{Numbers, numbers};
 use crate::model::{Model, Range, Symbol};
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 /// What is less than this part of its terms is 0.
 const ROUNDING: f64 = 1e-14;
@@ -26,15 +26,15 @@ fn of_one(model: &Model) -> HashSet<usize> {
     let mut found = HashSet::new();
     let Ok(numbers) = numbers(model) else { return found };
     let mut graph = model.graph.clone();
-    let (tried, mut readers) = replaced(&mut graph, model.symbols.len(), &roots(model));
+    let symbols = model.symbols.len();
+    let (tried, mut readers) = replaced(&mut graph, symbols, &roots(model), Kink::or_knot);
     // What is inside of another kink is read by that.
     readers.extend(tried.iter().map(|it| it.e));
     for it in &tried {
-        let Some(kink) = Kink::of(&mut graph, it.original, it.original) else { continue };
-        let Some(parameters) = parameters_of(model, &graph, kink.e) else { continue };
-        let is_met = is_zero(&mut graph, kink.e, &numbers);
-        if is_met && readers.iter().any(|root| is_bent(&mut graph, *root, it)) {
-            found.extend(parameters);
+        let Some(kink) = Kink::or_knot(&mut graph, it.original, it.original) else { continue };
+        let parameters = parameters_of(model, &mut graph, kink.e, &numbers);
+        if !parameters.is_empty() && readers.iter().any(|root| is_bent(&mut graph, *root, it)) {
+            found.extend(with_sources(model, parameters));
         }
     }
     found
@@ -61,23 +61,53 @@ fn roots(model: &Model) -> Vec<ExprId> {
     roots
 }
 
-/// The parameters that move a kink, with all that they are computed from; nothing where something
-/// else moves it, too.
-fn parameters_of(model: &Model, graph: &Graph, e: ExprId) -> Option<HashSet<usize>> {
-    let parameter = |at: u32| match model.symbols[at as usize] {
+/// The parameters that move away from a kink, where their values alone are the reason that it is
+/// met: `a*x` is 0 at any `x` where `a` is.
+fn parameters_of(model: &Model, graph: &mut Graph, e: ExprId, numbers: &Numbers) -> Vec<usize> {
+    let inputs: Vec<(u32, Option<usize>)> =
+        graph.inputs_of(&[e]).into_iter().map(|at| (at, parameter(model, at))).collect();
+    if inputs.iter().all(|it| it.1.is_some()) {
+        let is_met = is_zero(graph, e, numbers);
+        return inputs.into_iter().filter_map(|it| it.1.filter(|_| is_met)).collect();
+    }
+    let is_nothing = |graph: &mut Graph, e: ExprId| {
+        let fixed: HashMap<u32, ExprId> = inputs
+            .iter()
+            .filter(|it| it.1.is_some())
+            .map(|it| (it.0, graph.number(numbers.inputs()[it.0 as usize])))
+            .collect();
+        let value = graph.substitute(&[e], &|at| fixed.get(&at).copied())[0];
+        graph.as_number(value) == Some(0.0)
+    };
+    if !is_nothing(graph, e) {
+        return Vec::new();
+    }
+    let moves = |graph: &mut Graph, at: u32| {
+        let slope = derivative(graph, e, at);
+        !is_nothing(graph, slope)
+    };
+    let of_inputs = inputs.iter().filter_map(|&(at, of)| of.filter(|_| moves(graph, at)));
+    of_inputs.collect()
+}
+
+fn parameter(model: &Model, input: u32) -> Option<usize> {
+    match model.symbols[input as usize] {
         Symbol::Param(index) => Some(index),
         _ => None,
-    };
-    let mut open: Vec<usize> =
-        graph.inputs_of(&[e]).into_iter().map(parameter).collect::<Option<_>>()?;
+    }
+}
+
+/// Parameters with all that they are computed from.
+fn with_sources(model: &Model, mut open: Vec<usize>) -> HashSet<usize> {
     let mut all = HashSet::new();
     while let Some(at) = open.pop() {
         if all.insert(at) {
             let value = Vec::from_iter(model.params[at].value);
-            open.extend(model.graph.inputs_of(&value).into_iter().filter_map(parameter));
+            let inputs = model.graph.inputs_of(&value).into_iter();
+            open.extend(inputs.filter_map(|input| parameter(model, input)));
         }
     }
-    Some(all)
+    all
 }
 
 /// Whether an expression over parameters is 0 but for rounding.

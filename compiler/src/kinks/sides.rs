@@ -7,6 +7,7 @@
 //! A length has a kink at 0: `sqrt(s) <= c` is `(s/c + c)/2 <= c`, whose value and slope are the
 //! same where it holds as an equality.
 
+use super::Kink;
 use super::bent::{Tried, replaced};
 use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::derivative::derivative;
@@ -37,7 +38,7 @@ pub(super) fn length(
 /// What is bounded in place of the value of a condition, the first of these with all kinks above;
 /// nothing where it has no kinks, or not of this kind. `symbols` inputs have a meaning.
 pub(super) fn sides(graph: &mut Graph, symbols: usize, row: &Constraint) -> Option<Vec<ExprId>> {
-    let (kinks, rewritten) = replaced(graph, symbols, &[row.value]);
+    let (kinks, rewritten) = replaced(graph, symbols, &[row.value], Kink::of);
     let is_inside = |it: &Tried| graph.inputs_of(&[it.e]).iter().any(|at| *at as usize >= symbols);
     if kinks.is_empty() || kinks.len() > MOST || kinks.iter().any(is_inside) {
         return None;

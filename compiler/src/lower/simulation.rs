@@ -65,6 +65,10 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let layout = Layout { s: surfaces, ..sizes.flow() };
     let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
     let mut flow = over.flow();
+    if purpose != Purpose::Simulation {
+        // The kinks of computed parameters are those of what they are computed from.
+        write_out(model, over.graph, &mut flow);
+    }
     let [kinks, fixed_kinks] = over.kinks(&mut flow);
     let (switching, path) = (over.switching(), over.path());
     let rates = over.rates(&flow, &switching);

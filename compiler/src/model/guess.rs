@@ -45,7 +45,8 @@ pub(crate) fn over_time(
 /// The guess of all states over the symbols of the model: as written, or straight from start to
 /// end.
 pub(crate) fn straight_guesses(model: &Model, graph: &mut Graph) -> Vec<ExprId> {
-    let time = model.input_of(Symbol::Time).expect("time is a symbol");
+    // Where there is no state there may be no time.
+    let Some(time) = model.input_of(Symbol::Time) else { return Vec::new() };
     let [now, first, last] = [graph.input(time), model.interval[0], model.interval[1]];
     let (passed, duration) = (graph.sub(now, first), graph.sub(last, first));
     let tau = graph.div(passed, duration);

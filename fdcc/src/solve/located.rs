@@ -6,6 +6,7 @@ use super::found::Found;
 use super::kink_gaps::is_tight;
 use super::report::Options;
 use super::sequences::happened;
+use super::simulated_start::of_guess;
 use super::true_optimum::{
     Certificate, Contacts, First, Located, Spent, Whole, locate, on_half_intervals, polished,
     replayed,
@@ -35,9 +36,33 @@ pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Soluti
         true => near(First::Contacts).map_err(|other| one.least(other)),
         false => Err(one),
     });
+    // A fit follows the motion of its guess, too: what is certified there may fit far better.
+    let certified = match of_guess(&found, options) {
+        Some(guessed) => better_of(certified, || {
+            let spent = Spent::default();
+            let (between, found) = (&between, &guessed);
+            Search { model, between, found, options, first: First::Controls, spent }.near_motion()
+        }),
+        None => certified,
+    };
     match certified {
         Ok(answer) => answer,
         Err(certificate) => Solution::new(model.clone(), found).missed(certificate, options),
+    }
+}
+
+/// The certified answer, or the better one of two.
+fn better_of(
+    first: Result<Solution, Certificate>,
+    second: impl FnOnce() -> Option<Solution>,
+) -> Result<Solution, Certificate> {
+    match (first, second()) {
+        (Ok(first), Some(second)) => {
+            let worth = |it: &Solution| it.problem.sense * it.objective();
+            Ok(if worth(&second) < worth(&first) { second } else { first })
+        }
+        (Err(_), Some(second)) => Ok(second),
+        (first, None) => first,
     }
 }
 
@@ -86,6 +111,17 @@ impl Search<'_> {
             }
         }
         Err(least)
+    }
+
+    /// What is certified near the motion of the true system with what was found.
+    fn near_motion(&mut self) -> Option<Solution> {
+        let found = self.found;
+        let outcome = found.outcome.clone();
+        let whole = Whole::of_smoothed(self.between, &found.problem, outcome, Vec::new());
+        let located = self.replayed(&Solution::new(self.model.clone(), found.clone()), &whole)?;
+        let (answer, located) = self.refined(located);
+        let is_certified = answer.is_certified();
+        is_certified.then(|| self.ended(answer, &located))
     }
 
     /// The first that is certified: what was located at last, or on the way.

@@ -7,7 +7,7 @@
 
 use super::Solution;
 use super::report::Options;
-use super::tuning::magnitudes::{MOST, NO_OBJECTIVE, NOTHING, ROUNDING};
+use super::tuning::magnitudes::{LEAST, MOST, NO_OBJECTIVE, NOTHING, ROUNDING};
 use crate::error::Error;
 use crate::model::Model;
 
@@ -21,7 +21,8 @@ pub(super) fn with_own_magnitudes(
         let Some(model) = smaller(&found) else { break };
         let next = model.compile()?.solve_once(options)?;
         // Where there are several sequences of jumps, one of them may fail in its own magnitudes.
-        let is_nothing = next.is_certified() && next.objective().abs() < NO_OBJECTIVE;
+        let is_better = !found.is_certified() || next.objective() <= found.objective();
+        let is_nothing = is_better && next.is_certified() && next.objective().abs() < NO_OBJECTIVE;
         if !next.status().is_solved() || !(is_value(&found, &next) || is_nothing) {
             break;
         }
@@ -47,7 +48,8 @@ fn smaller(solution: &Solution) -> Option<Model> {
         (it, column.iter().fold(0.0, |most: f64, value| most.max(value.abs())))
     });
     let small = sized.filter(|(it, size)| *size > 0.0 && *size < NOTHING * it.unit);
-    let magnitudes: Vec<_> = small.map(|(it, size)| (it.name.clone(), size)).collect();
+    let magnitudes: Vec<_> =
+        small.map(|(it, size)| (it.name.clone(), size.max(LEAST * it.unit))).collect();
     let is_one = is_small && solution.status().is_solved() && !magnitudes.is_empty();
     is_one.then(|| solution.model().with_magnitudes(magnitudes))
 }

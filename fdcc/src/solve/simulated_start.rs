@@ -2,6 +2,8 @@
 //! unknowns leads to: signals that are guessed apart from each other may lead to a trajectory that
 //! a grid allows, and no motion does.
 
+use super::found::Found;
+use super::report::{Options, Start as From};
 use super::tuning::sequences::STEPS;
 use crate::error::Error;
 use crate::model::Model;
@@ -25,6 +27,25 @@ pub(super) fn start(model: &Model, chain: &Chain) -> Option<Start> {
     let own = chain.phases.iter().zip(&motions);
     is_whole
         .then(|| from_trajectories(chain, &own.map(|(it, of)| earlier(it, of)).collect::<Vec<_>>()))
+}
+
+/// An answer with the unknowns as they are guessed, where it is one of a fit with switches, nothing
+/// is controlled, and the times are given.
+pub(super) fn of_guess(found: &Found, options: &Options) -> Option<Found> {
+    let problem = &found.problem;
+    let is_fit = problem.controls.is_empty() && !problem.measurements.is_empty();
+    let is_asked = matches!(options.start, From::Guess) && !problem.surfaces.is_empty();
+    if !is_fit || !is_asked {
+        return None;
+    }
+    let mut guessed = found.clone();
+    let own = &mut guessed.outcome.trajectory;
+    for unknown in &problem.unknowns {
+        own.parameters[unknown.parameter] = problem.parameters[unknown.parameter].value;
+    }
+    // The grid is that of the answer.
+    let ends = [own.time[0], own.time[own.time.len() - 1]];
+    (problem.ends(&own.parameters) == ends).then_some(guessed)
 }
 
 fn motions(model: &Model) -> Result<Vec<Simulation>, Error> {

@@ -12,6 +12,8 @@ pub(super) mod magnitudes {
     /// second as 0 (decision 30).
     pub(crate) const NOTHING: f64 = 1e-6;
     pub(crate) const NO_OBJECTIVE: f64 = 1e-8;
+    /// Magnitudes are at least this part of the unit: powers of smaller ones are no numbers.
+    pub(crate) const LEAST: f64 = 1e-30;
     /// An objective that changes by a larger factor, or by its inverse, was rounding.
     pub(crate) const ROUNDING: f64 = 1e3;
     /// So often what is found is smaller again.

@@ -190,6 +190,9 @@ fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) ->
     let own = nlp.gradient_from_here_on();
     let states = problem.layout.x;
     let mut costates = vec![vec![0.0; stages.intervals + 1]; states];
+    if states == 0 {
+        return costates;
+    }
     for k in 0..=stages.intervals {
         for (i, variable) in stages.state(k).take(states).enumerate() {
             costates[i][k] = own[variable];

@@ -12,7 +12,8 @@ use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
 
 /// The guess (or `base`) with smooth random variations of every signal and unknown; the same for
-/// the same seed and index.
+/// the same seed and index. With an even index unknowns are anywhere within finite bounds, else
+/// near their guess.
 pub fn perturbed(chain: &Chain, base: Option<Vec<f64>>, index: u32) -> Start {
     let mut nlp = ChainNlp::new(chain);
     let v = base.unwrap_or_else(|| nlp.guess());
@@ -24,9 +25,12 @@ pub fn perturbed(chain: &Chain, base: Option<Vec<f64>>, index: u32) -> Start {
     }
     let mut start = nlp.shape().joined(&own, &whole);
     for place in nlp.shape().unknowns[0]..nlp.shape().unknowns[1] {
-        let value = &mut start.v[place];
-        let size = room(nlp.variable_bounds()[place], *value, *value);
-        *value += VARIATION * size.min(value.abs().max(1.0)) * random.next();
+        let (value, bounds) = (&mut start.v[place], nlp.variable_bounds()[place]);
+        let (room, variation) = (room(bounds, *value, *value), random.next());
+        *value = match index.is_multiple_of(2) && (bounds.upper - bounds.lower).is_finite() {
+            true => bounds.lower + room * 0.5 * (1.0 + variation),
+            false => *value + VARIATION * room.min(value.abs().max(1.0)) * variation,
+        };
     }
     start
 }

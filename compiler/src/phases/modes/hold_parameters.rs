@@ -31,6 +31,20 @@ impl HoldNormals<'_> {
         started.into_iter().map(|it| self.by_parameters(&mut graph, it, point)).collect()
     }
 
+    /// Whether `psi` at the first time is given, for each surface; else it is a row of the chain,
+    /// or links say it.
+    pub fn are_starts_given(&self) -> Vec<bool> {
+        let is_unknown = |at: &u32| matches!(self.model.symbols[*at as usize], Symbol::Free(_));
+        let is_given = |at: u32| match self.model.symbols[at as usize] {
+            Symbol::State(state) => self.model.states[state]
+                .start
+                .is_some_and(|start| !self.graph.inputs_of(&[start]).iter().any(is_unknown)),
+            _ => true,
+        };
+        let psi = self.psi().into_iter();
+        psi.map(|it| self.graph.inputs_of(&[it]).into_iter().all(is_given)).collect()
+    }
+
     /// The derivatives of `psi`, one for each surface.
     pub fn slopes(&self, point: &Point) -> Vec<Slopes> {
         let mut graph = self.graph.clone();

@@ -1,9 +1,11 @@
 //! What the multipliers of a chain do not say of the sensitivity of the optimal cost: parameters
 //! that move a surface which is held from the first time on, or until the last.
 //!
-//! A start beside the surface is led onto it at once, so that the objective changes by the gradient
-//! (`costates.rs`) and not by the multipliers: with `lambda = gradient + sum of c d` by `c dpsi/dp`
-//! less. An end beside it is another motion for each side, so that there the objective has a kink.
+//! A given start beside the surface is led onto it at once, so that the objective changes by the
+//! gradient (`costates.rs`) and not by the multipliers: with `lambda = gradient + sum of c d` by
+//! `c dpsi/dp` less. Where the start is chosen `psi = 0` is a row of the chain, whose multiplier
+//! says it. An end beside the surface is another motion for each side, so that there the objective
+//! has a kink.
 //! So it has where the motion begins on a surface that it leaves at once, or ends on one that it
 //! reaches at last: beside it that happens a moment earlier, or not at all.
 
@@ -23,7 +25,8 @@ impl Located {
         if let Some(hold) = Hold::new(self, (model, problem), 0) {
             let coefficients = hold.at(0).0;
             let slopes = hold.normals.starts_by_parameters(&hold.point(0));
-            for (c, slopes) in coefficients.iter().zip(slopes) {
+            let of_given = coefficients.iter().zip(slopes).zip(hold.normals.are_starts_given());
+            for ((c, slopes), _) in of_given.filter(|it| it.1) {
                 all.iter_mut().zip(slopes).for_each(|(sum, slope)| *sum -= c * slope);
             }
         }

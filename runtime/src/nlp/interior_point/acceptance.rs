@@ -4,6 +4,7 @@ use super::algorithm::{Algorithm, Outcome};
 use super::iterate::Values;
 use super::line_search::{Accepted, Search};
 use super::tuning::algorithm::{MOST_TINY_STEPS, TINY_STEP};
+use super::tuning::barrier::WHOLE;
 use super::tuning::termination::ACCEPTABLE_ERROR;
 use super::vectors::{add_scaled, largest};
 use crate::nlp::{Nlp, Status};
@@ -114,6 +115,8 @@ impl Algorithm {
         add_scaled(&mut self.at.lower, &self.step.lower, dual);
         add_scaled(&mut self.at.upper, &self.step.upper, dual);
         let is_newton = self.kkt.regularization == 0.0 && self.watchdog.saved.is_none();
+        let is_creeping = !self.kkt.is_newton() && self.watchdog.saved.is_none();
+        self.creeping = if is_creeping && alpha >= WHOLE { self.creeping + 1 } else { 0 };
         self.barrier.note(alpha, is_newton);
         self.barrier.correct_multipliers(&self.formulation, &mut self.at);
         self.counts.iterations += 1;

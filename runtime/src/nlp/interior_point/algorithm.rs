@@ -11,6 +11,7 @@ use super::restoration::Restored;
 use super::termination::Target;
 use super::tuning::algorithm::MOST_RESTARTS;
 use super::tuning::restoration::REQUIRED_DECREASE;
+use super::tuning::saddle::CREEPING_STEPS;
 use super::tuning::termination::ACCEPTABLE_ERROR;
 use super::watchdog::Watchdog;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Watch};
@@ -52,6 +53,9 @@ pub(super) struct Algorithm {
     /// acceptable one could not be mended.
     pub(super) is_relaxed: bool,
     pub(super) target: Target,
+    /// Whole regularised steps in a row, and how many of them are looked at.
+    pub(super) creeping: usize,
+    pub(super) creeping_limit: usize,
     /// How often a saddle was left.
     pub(super) departures: usize,
     /// Whether the iterate is one that could not be left.
@@ -94,6 +98,8 @@ impl Algorithm {
             emptied: 0,
             is_relaxed: false,
             target: Target::new(options.tol),
+            creeping: 0,
+            creeping_limit: CREEPING_STEPS,
             departures: 0,
             is_saddle: false,
             descent: None,
@@ -204,6 +210,9 @@ impl Algorithm {
         }
         if let Some(status) = self.finished(nlp) {
             return Outcome::Done(status);
+        }
+        if self.leaves_creeping(nlp) {
+            return Outcome::Continue;
         }
         // convergence for the barrier problem; then the next one, with an empty filter.
         if self.barrier.update(&self.residuals) {

@@ -61,7 +61,8 @@ impl Kkt {
         least: f64,
         counts: &mut Counts,
     ) -> bool {
-        self.regularization = least;
+        // Far away from the start it may be 0, which does not grow.
+        self.regularization = least.max(1.0 / LARGEST_REGULARIZATION);
         let (mut rows, mut wrong) = (0.0, None);
         loop {
             match self.factor_once(formulation, slopes, rows, counts) {

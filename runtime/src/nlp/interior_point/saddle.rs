@@ -13,8 +13,9 @@
 use super::algorithm::Algorithm;
 use super::iterate::{SearchDirection, Values};
 use super::tuning::saddle::{
-    AWAY, FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, MOST_DEPARTURES,
-    MOST_HALVINGS, MOST_ITERATIONS, NOTHING, ROOM, ROUNDING, SHORT_STEPS, SIGN_PATTERNS, SPREAD,
+    AWAY, CREEPING, FEW_ITERATIONS, GOLDEN, ITERATIONS, LARGEST_VIOLATION, LEAST_GAIN, LONGER,
+    MOST_DEPARTURES, MOST_HALVINGS, MOST_ITERATIONS, NOTHING, ROOM, ROUNDING, SHORT_STEPS,
+    SIGN_PATTERNS, SPREAD,
 };
 use super::vectors::dot;
 use crate::nlp::Nlp;
@@ -49,6 +50,25 @@ impl Algorithm {
         self.is_saddle = self.departures >= MOST_DEPARTURES || !self.depart(nlp, &mut step, gain);
         self.departures += 1;
         if self.is_saddle { Departure::Impossible } else { Departure::Taken }
+    }
+
+    /// Leaves a point near a saddle to which regularised steps creep: they go down where the
+    /// Lagrangian is convex by little, and along a direction of negative curvature that its
+    /// gradient does not know not at all. `false` where they do as well.
+    pub(super) fn leaves_creeping(&mut self, nlp: &mut dyn Nlp) -> bool {
+        if self.creeping < self.creeping_limit || self.departures >= MOST_DEPARTURES {
+            return false;
+        }
+        self.creeping_limit *= LONGER;
+        let decrease = self.kkt.slope(&self.step).abs();
+        let found = self.assessment(nlp);
+        let least = self.least_curvature(nlp, &found);
+        let Some((mut step, curvature)) = self.lowest_curvature(nlp, least) else { return false };
+        let length = self.stretch(&self.reach(nlp), &mut step);
+        let gain = -0.5 * curvature * length * length;
+        let is_left = gain > CREEPING * decrease && self.depart(nlp, &mut step, gain);
+        self.departures += usize::from(is_left);
+        is_left
     }
 
     /// Whether the barrier is all that keeps variables between their bounds from gaining what

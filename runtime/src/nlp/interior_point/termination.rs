@@ -146,7 +146,7 @@ impl Algorithm {
         is_found.then(|| kkt.slope(&step).abs())
     }
 
-    fn assessment(&self, nlp: &mut dyn Nlp) -> Assessment {
+    pub(super) fn assessment(&self, nlp: &mut dyn Nlp) -> Assessment {
         let variables = self.formulation.variables;
         let multipliers = Multipliers {
             constraints: self.at.lambda.clone(),

@@ -148,6 +148,11 @@ pub(crate) mod restoration {
 pub(crate) mod saddle {
     /// A point is left so often.
     pub(crate) const MOST_DEPARTURES: usize = 5;
+    /// So many whole regularised steps in a row creep, if curvature gains so many times what the
+    /// last of them does; where it does not, it is looked at again after so many times as many.
+    pub(crate) const CREEPING_STEPS: usize = 20;
+    pub(crate) const CREEPING: f64 = 100.0;
+    pub(crate) const LONGER: usize = 2;
     /// Steps of the inverse iteration, at least, and at most where none with negative curvature is
     /// found.
     pub(crate) const ITERATIONS: usize = 8;

@@ -7,6 +7,7 @@ use crate::problem::{Columns, Function};
 use crate::sensitivity::linearised::linearisation::{Jacobian, Lineariser};
 use crate::simulate::{Piece, Tape};
 use std::ops::Range;
+use std::sync::Arc;
 
 /// A second distance, for comparison, and the part of a difference that stays there.
 const NEARER: f64 = 16.0;
@@ -15,8 +16,8 @@ const STAYS: f64 = 0.5;
 /// What is less than this part of the terms, and of the value, is rounding.
 const UNKNOWN: f64 = 5e-14;
 
-/// The first kink that one of these parameters is on: of the times, of the starts, of a surface
-/// where a regime begins, or of the right side where a step begins.
+/// The first kink that one of these parameters is on: of the times, of the starts, of a surface or
+/// a guessed control where a regime begins, or of the right side where a step begins.
 pub(crate) fn parameter_kink(
     lineariser: &Lineariser,
     tape: &Tape,
@@ -26,15 +27,19 @@ pub(crate) fn parameter_kink(
     let nothing = Columns::new(0, 1);
     let fixed = [(&system.interval_of, nothing.clone()), (&system.start_of, nothing)];
     let watched = begins(lineariser, tape).into_iter().map(|point| (&system.switching, point));
-    let others = fixed.into_iter().chain(watched).find_map(|(function, point)| {
-        let of = |parameter: &usize| output_with_kink(&**function, &point, lineariser, *parameter);
-        let output = parameters.iter().find_map(of)?;
-        Some(function.origin(output))
+    let all = fixed.into_iter().chain(watched).map(|(function, point)| (function, point, 0));
+    let others = all.chain(guesses(lineariser, tape)).find_map(|(function, point, first)| {
+        let outputs = first..function.outputs();
+        let of = |parameter: &usize| {
+            output_with_kink(&**function, &point, lineariser, *parameter, outputs.clone())
+        };
+        Some(function.origin(parameters.iter().find_map(of)?))
     });
     let of_flow = || {
         steps_on_kinks(lineariser, tape, parameters).find_map(|point| {
             let of = |parameter: &usize| {
-                let bent = output_with_kink(&*system.flow, &point, lineariser, *parameter);
+                let all = 0..system.flow.outputs();
+                let bent = output_with_kink(&*system.flow, &point, lineariser, *parameter, all);
                 bent.or_else(|| output_of_one_side(&*system.flow, &point, lineariser, *parameter))
             };
             Some(system.flow.origin(parameters.iter().find_map(of)?))
@@ -55,6 +60,21 @@ fn begins(lineariser: &Lineariser, tape: &Tape) -> Vec<Columns> {
         }
     }
     points
+}
+
+/// The guess where the first steps of all regimes begin, and the first of its controls; nothing
+/// where controls are given.
+fn guesses<'a>(
+    lineariser: &'a Lineariser,
+    tape: &Tape,
+) -> impl Iterator<Item = (&'a Arc<dyn Function>, Columns, usize)> {
+    let points = if lineariser.is_guessed() { begins(lineariser, tape) } else { Vec::new() };
+    let guess = &lineariser.system.guess;
+    let controls = lineariser.system.layout.x;
+    points.into_iter().map(move |point| {
+        let tau = lineariser.tau(point.column(0)[0]);
+        (guess, Columns::of_point(&[tau]), controls)
+    })
 }
 
 /// Where the steps begin, if one of these parameters is on a kink of the right side. Whether that
@@ -85,12 +105,13 @@ fn steps_on_kinks<'a>(
     points.take(if is_on { usize::MAX } else { 0 })
 }
 
-/// The first output of a function at a point that has a kink along a parameter.
+/// The first of some outputs of a function at a point that has a kink along a parameter.
 fn output_with_kink(
     function: &dyn Function,
     point: &Columns,
     lineariser: &Lineariser,
     parameter: usize,
+    outputs: Range<usize>,
 ) -> Option<usize> {
     let values = |moved: f64| {
         let mut parameters = lineariser.parameters.clone();
@@ -98,7 +119,7 @@ fn output_with_kink(
         values_of(function, point, &parameters)
     };
     let terms = terms_of(function, point, &lineariser.parameters);
-    first_with_kink(lineariser.parameters[parameter], 0..function.outputs(), &terms, values)
+    first_with_kink(lineariser.parameters[parameter], outputs, &terms, values)
 }
 
 /// The first output of a function at a point whose derivative by a parameter is that of neither

@@ -5,6 +5,7 @@ use crate::commands::USUAL_GAP;
 use crate::commands::solver::document;
 use crate::drawing::render::Renderer;
 use crate::failure::Failure;
+use crate::output::derivatives::Derivative;
 use crate::output::document::{Document, Seconds};
 use crate::output::named::Named;
 use crate::output::optimality::on_the_true_system;
@@ -59,6 +60,18 @@ impl Answer {
         let mut document = self.document().clone();
         document.replay(&self.solution, gap);
         output::json(&document.verification)
+    }
+
+    /// How the optimum moves with a parameter, as an entry of `derivatives` in the document.
+    ///
+    /// # Errors
+    ///
+    /// Why it has no such derivative, in words.
+    pub fn derivative(&self, parameter: &str) -> Result<String, String> {
+        match Derivative::new(&self.solution, parameter) {
+            Derivative::None(why) => Err(why),
+            found => Ok(output::json(&found)),
+        }
     }
 
     /// The text of a `.sol.json`.

@@ -52,8 +52,9 @@ pub use simulation::Simulation;
 pub use simulation_of_phases::SimulationOfPhases;
 pub use solve::true_optimum;
 pub use solve::{
-    Case, Cases, Compiled, Controller, CostatesBefore, Ended, Family, Grid, Jump, Options, Part,
-    PathCondition, Phases, Reach, Report, Sequence, Solution, Start, Sweep, optimality,
+    Case, Cases, Compiled, Controller, CostatesBefore, Ended, Family, Grid, Jump, Options,
+    ParametricSensitivity, Part, PathCondition, PhaseSensitivity, Phases, Reach, Report, Sequence,
+    Solution, Start, Sweep, optimality,
 };
 pub use verification::{Condition, Gap, LinkGap, Stay, TIME_OF, Verification, modes};
 

@@ -2,6 +2,7 @@
 
 use crate::column::Column;
 use fdcc_cli::Answer;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::sync::Arc;
 
@@ -128,6 +129,11 @@ impl Solution {
     /// What the replay says, as JSON.
     fn verification(&self, py: Python, gap: f64) -> String {
         py.detach(|| self.answer.verification(gap))
+    }
+
+    /// How the optimum moves with a parameter, as JSON.
+    fn derivative(&self, py: Python, by: &str) -> PyResult<String> {
+        py.detach(|| self.answer.derivative(by)).map_err(PyValueError::new_err)
     }
 
     /// The text of a `.sol.json`.

@@ -276,6 +276,12 @@ fn kinks_of_parameters_alone_are_seen() {
             "time t in [0, 1] state x start 1 control u in [-1, 1] dynamics { x' = u }
              guess { u = 0.1 + max(a, 0) } minimize x(end)",
         ),
+        (
+            "a",
+            0.0,
+            "time t in [0, 2] state x start 1 control u in [-9, 9] dynamics { x' = u }
+             guess { u = abs(a)*t } minimize x(end)",
+        ),
     ];
     for (name, place, text) in texts {
         for (value, is_on) in [(place, true), (place + 0.1, false), (place - 0.1, false)] {

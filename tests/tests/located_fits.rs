@@ -135,6 +135,8 @@ fn what_the_guess_does_is_fitted_too() {
     assert_near(&solution, &[("mu", mu), ("k", k), ("vb", belt)], 1e-7);
     let estimates = solution.estimates().expect("it is a fit");
     assert!(estimates.undetermined.is_empty(), "{:?}", estimates.undetermined);
+    // That its selector is 1 where it is left follows from the equations, and forbids nothing.
+    assert_eq!(estimates.degrees_of_freedom, Some(31 - 3));
 }
 
 /// A block that is pushed with 2 until `T = 1` and slides on, with friction 0.5 that brings it to

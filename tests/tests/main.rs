@@ -46,6 +46,7 @@ mod located_fits;
 mod manual;
 mod models;
 mod orders;
+mod parametric;
 mod phases;
 mod polynomial_controls;
 mod proportion;

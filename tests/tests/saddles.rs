@@ -132,3 +132,34 @@ fn a_saddle_along_a_start_is_left() {
         assert!((found.objective() - least).abs() <= 1e-6 * range.powi(2), "{text}");
     }
 }
+
+/// A push of a truck in newtons: its bounds are no statement about its size, and one newton moves
+/// nothing. `cos(x(end))` is least at `x = pi`, with the guess at its maximum; and a hill beside
+/// the path of a truck, J as in kilonewtons.
+#[test]
+fn a_saddle_of_a_large_number_is_left() {
+    let push = |unit: &str, room: &str| {
+        format!(
+            "free F in [-{room}, {room}] [{unit}] time t in [0, 2] [s] state x [m] start 0
+             state v [m/s] start 0 const m = 1e5 [kg]
+             dynamics {{ x' = v  m*v' = F }} minimize cos(x(end)/1[m])"
+        )
+    };
+    let hill = |unit: &str, room: &str| {
+        format!(
+            "time t in [0, 12] [s] state x [m] start 0 state v [m/s] start 0 const m = 1e5 [kg]
+             control F [{unit}] in [-{room}, {room}] dynamics {{ x' = v  m*v' = F }}
+             end x == 0 end v == 0
+             minimize integral(0.05*(F/1e5[N])^2 + exp(-(x/1[m])^2))"
+        )
+    };
+    let solved = |text: &str| {
+        let model = fdcc::Model::from_text("truck", text).expect("it has no mistakes");
+        let found = model.solve(&fdcc::Options::default()).expect("it can be solved");
+        assert!(found.is_certified(), "{text}: {:?}", found.certificate);
+        found.objective()
+    };
+    assert!((solved(&push("N", "3e5")) + 1.0).abs() < 1e-6);
+    let [large, small] = [solved(&hill("N", "5e5")), solved(&hill("kN", "500"))];
+    assert!(large < 11.0 && (large - small).abs() < 1e-6 * small, "{large} {small}");
+}

@@ -6,6 +6,7 @@ use super::written;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output;
+use crate::output::derivatives::Derivative;
 use crate::output::named::Named;
 use crate::report::log::Level;
 use crate::report::{failure, verdict};
@@ -31,6 +32,9 @@ pub struct Solve {
     /// contradicts that it is an optimum
     #[arg(long)]
     confirmed: bool,
+    /// How the optimum moves with these parameters: unknowns, switching times, states and controls
+    #[arg(long, value_name = "A,B,...", value_delimiter = ',')]
+    wrt: Vec<String>,
     #[command(flatten)]
     gap: Gap,
 }
@@ -51,6 +55,9 @@ impl Solve {
     }
 
     fn solve(&self, model: &Model, begin: Instant) -> Result<Solved, Failure> {
+        if let Some(name) = self.wrt.iter().find(|it| !model.has_param(it)) {
+            return Err(Failure::Usage(model.meaning().no_param(name)));
+        }
         let headline = |chain: &Chain| {
             if !self.options.json {
                 output::print_lines(&verdict::headline(chain));
@@ -59,6 +66,8 @@ impl Solve {
         let mut solved = solver::solve(model, &self.options, begin, Level::Short, headline)?;
         if solved.solution.status().is_solved() {
             solved.document.sensitivities = Named::of(solved.solution.sensitivities());
+            let by = |name: &String| (name.clone(), Derivative::new(&solved.solution, name));
+            solved.document.derivatives = self.wrt.iter().map(by).collect();
         }
         if solved.solution.status().is_solved() && !self.no_verify {
             let gap = self.gap.of(&solved.solution.problem.method);

@@ -2,6 +2,7 @@
 
 use super::certificate::Certificate;
 use super::convergence::Convergence;
+use super::derivatives::Derivative;
 use super::estimates::{Estimates, Residual};
 use super::hamiltonian_check::HamiltonianCheck;
 use super::method_used::MethodUsed;
@@ -69,6 +70,9 @@ pub struct Document {
     /// The derivative of the optimal objective by each parameter.
     #[serde(skip_serializing_if = "Named::is_empty")]
     pub sensitivities: Named<f64>,
+    /// How the optimum moves with the parameters that were asked for.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub derivatives: Named<Derivative>,
     pub report: Named<Vec<f64>>,
     pub surfaces: Named<Vec<Span>>,
     /// What holds in each phase, where the model has any: then all signals are theirs.
@@ -207,6 +211,7 @@ impl Document {
             step_errors: found.step_errors,
             hamiltonian_check: HamiltonianCheck::new(&problem.controls, &trajectory.hamiltonian),
             sensitivities: Named::default(),
+            derivatives: Named::default(),
             report: report.collect(),
             surfaces: spans_of(problem, outcome),
             phases: Named::default(),

@@ -5,6 +5,7 @@ pub mod closed_loop;
 pub mod control;
 pub mod convergence;
 pub mod csv;
+pub mod derivatives;
 pub mod diagnostics;
 pub mod document;
 pub mod ending;

@@ -89,6 +89,8 @@ pub fn verdict(solved: &Solved) -> String {
         lines.extend(hamiltonian(document));
     }
     lines.extend(sensitivities(document));
+    let moved = document.derivatives.0.iter();
+    lines.extend(moved.map(|(name, it)| it.line(name, &document.units)));
     lines.extend(next::line(document));
     lines.join("\n") + "\n"
 }

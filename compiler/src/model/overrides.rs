@@ -222,7 +222,8 @@ impl Model {
         misfit(&self.method).map_or(Ok(()), |(_, what, help)| Err(format!("{what}: {help}")))
     }
 
-    fn no_param(&self, name: &str) -> String {
+    /// Why nothing of this name can be set: what there is instead.
+    pub fn no_param(&self, name: &str) -> String {
         if self.frees.iter().any(|it| it.place.name == name) {
             return format!(
                 "`{name}` is an unknown, which is chosen in its bounds; its `guess` in the model \

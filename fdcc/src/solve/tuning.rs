@@ -20,6 +20,13 @@ pub(super) mod magnitudes {
     pub(crate) const MOST: usize = 4;
 }
 
+pub(super) mod parametric {
+    /// By how much of its value, or of its unit, a parameter differs between two programs.
+    pub(crate) const CHANGE: f64 = 1e-5;
+    /// What holds at the ends add to a slope is nothing below this part of it.
+    pub(crate) const MOVED: f64 = 1e-9;
+}
+
 pub(super) mod kinks {
     /// A kink is met where its two conditions are off by no more than this part of their size.
     pub(crate) const TIGHT: f64 = 1e-5;

@@ -72,6 +72,16 @@ class Solution:
             found = {**found, "confirmed": confirmed, "asked": gap}
         return json.dumps(found)
 
+    def derivative(self, by: str) -> str:
+        """Those that the document has: what was asked for with ``fdcc solve --wrt``."""
+        found = self._whole.get("derivatives", {}).get(by)
+        if found is None:
+            raise ValueError(
+                f"this was saved without a derivative by {by!r}; solve it again with `warm`, or by"
+                f" `fdcc solve --wrt {by}`"
+            )
+        return json.dumps(found)
+
     def json(self) -> str:
         return self._text
 

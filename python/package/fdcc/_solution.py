@@ -179,6 +179,22 @@ class Solution(Result):
         found = self.document.get("sensitivities", {}).items()
         return Named({name: Number(it, self._per(of, name)) for name, it in found})
 
+    def derivative(self, by: str) -> Record:
+        """How the optimum moves with a parameter, by the matrix of its optimality conditions:
+        ``free``, ``junctions`` (where the solution switches or something reaches or leaves a bound,
+        each with its ``time`` and ``derivative``), ``time``, and ``states`` and ``controls`` at
+        times that stay the same; of a model with phases these are in ``phases``. All in SI. An
+        optimum with a kink there, or that is no strict minimum, raises ``ValueError``.
+
+        >>> import fdcc
+        >>> m = fdcc.compile("time t in [0, 1]  param a = 2  state x start 0  control u"
+        ...     "  dynamics { x' = u }  end x == a  minimize integral(u^2)")
+        >>> by_a = m.solve().derivative("a")
+        >>> round(by_a.controls["u"][0], 6), round(by_a.states["x"][-1], 6)
+        (1.0, 1.0)
+        """
+        return read(self._solution.derivative(by))
+
     def _per(self, of: str, name: str) -> str:
         return per(of, self.units.get(name, ""))
 

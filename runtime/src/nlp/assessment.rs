@@ -162,7 +162,7 @@ impl Sums {
 }
 
 /// The largest value of each quantity over time.
-fn magnitudes(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
+pub(super) fn magnitudes(quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let mut magnitudes: Vec<f64> = quantities.units.iter().map(|unit| NOTHING * unit).collect();
     for (i, value) in quantities.variables.iter().zip(v) {
         magnitudes[*i] = magnitudes[*i].max(value.abs());

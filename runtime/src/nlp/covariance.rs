@@ -18,8 +18,11 @@
 //! that holds it. So it is, too, where the Lagrangian falls along the variable: the curvature is
 //! then that in the other directions.
 
-use super::tuning::covariance::{CLOSE, HARD, LEAST, NEAR, SMALL, SOFT, TINY};
-use super::{Derivatives, Nlp, Solution};
+use super::implied::implied;
+use super::tuning::covariance::{
+    CLOSE, GOLDEN, HARD, LEAST, NEAR, SETTLED, SMALL, SOFT, SOFTNESS, TINY,
+};
+use super::{Derivatives, Multipliers, Nlp, Solution};
 use crate::linalg::dense::eigen::eigen;
 use crate::linalg::solvers::{Structure, prepare};
 use crate::linalg::{Factor, Inertia, Triplets};
@@ -124,7 +127,7 @@ impl Springs {
 }
 
 /// The optimality conditions at a solution.
-struct System {
+pub(super) struct System {
     factor: Box<dyn Factor>,
     derivatives: Derivatives,
     bounds: Vec<Bounds>,
@@ -140,7 +143,7 @@ struct System {
 }
 
 impl System {
-    fn new(
+    pub(super) fn new(
         nlp: &mut dyn Nlp,
         solution: &Solution,
         of: Range<usize>,
@@ -163,7 +166,7 @@ impl System {
             fixed: &fixed,
             equality: &equality,
         };
-        let (_, factor) = prepare(Linear::SparseLdl, &structure);
+        let (_, mut factor) = prepare(Linear::SparseLdl, &structure);
         let size = |i: usize| i.checked_sub(of.start).and_then(|at| sizes.get(at));
         let side = |i: usize, distance: f64, multiplier: f64| match size(i) {
             Some(size) => multiplier.max(0.0) / distance.max(CLOSE * size),
@@ -185,10 +188,80 @@ impl System {
             let phase = if place.grid_point.is_some() { 0 } else { place.phase };
             (phase, place.origin.label.to_string())
         };
-        let mut active: Vec<_> = (0..d.len()).filter(is_active).map(named).collect();
+        let rows: Vec<usize> = (0..d.len()).filter(is_active).collect();
+        let size = |(value, quantity): (&f64, &f64)| value.abs().max(*quantity).max(TINY);
+        let quantities = nlp.quantities();
+        let units = quantities.variables.iter().map(|it| quantities.units[*it]);
+        let units: Vec<f64> = units.collect();
+        let springs = v.iter().zip(&units).map(|it| size(it).powi(-2)).collect::<Vec<_>>();
+        let jacobian = (nlp.jacobian_structure(), &derivatives.jacobian[..]);
+        let hessian = derivatives.hessian.len();
+        let implied = implied(&mut *factor, jacobian, (&springs, &equality), hessian, &rows);
+        let forbidding = rows.into_iter().zip(implied).filter(|it| !it.1);
+        let mut active: Vec<_> = forbidding.map(|it| named(it.0)).collect();
         active.sort();
         active.dedup();
         System { factor, derivatives, bounds, sigma, d, active: active.len(), fixed, equality, of }
+    }
+
+    /// With the springs of all bounds and inequalities, active or not: the matrix of the last step.
+    pub(super) fn with_all_bounds(mut self, nlp: &mut dyn Nlp, solution: &Solution) -> Self {
+        let Multipliers { constraints, lower, upper } = &solution.multipliers;
+        let side = |multiplier: f64, distance: f64| multiplier.max(0.0) / distance.max(TINY);
+        for (i, (bounds, value)) in self.bounds.iter().zip(&solution.v).enumerate() {
+            let below = side(lower[i], value - bounds.lower);
+            self.sigma[i] = below + side(upper[i], bounds.upper - value);
+        }
+        let mut values = vec![0.0; constraints.len()];
+        nlp.values(&solution.v, &mut values);
+        let rows = nlp.constraint_bounds().iter().zip(values.iter().zip(constraints));
+        for ((d, is_equality), (bounds, (value, lambda))) in
+            self.d.iter_mut().zip(&self.equality).zip(rows)
+        {
+            let below = side(-lambda, value - bounds.lower);
+            let spring = below + side(*lambda, bounds.upper - value);
+            *d = if *is_equality { 0.0 } else { 1.0 / spring.max(TINY) };
+        }
+        self
+    }
+
+    /// What bounds add to the diagonal, one number per variable.
+    pub(super) fn springs(&self) -> &[f64] {
+        &self.sigma
+    }
+
+    /// The solution for a right side over variables and rows, with as soft springs of all variables
+    /// as give the right inertia; none if none of these does. What depends on how stiff they are
+    /// beside each other, by more than `least`, is no number.
+    pub(super) fn solved(
+        &mut self,
+        right: &[f64],
+        (soft, least): (&[f64], &[f64]),
+    ) -> Option<Vec<f64>> {
+        let (part, found) = SOFTNESS.into_iter().find_map(|part| {
+            let springs: Vec<f64> = soft.iter().map(|soft| part * soft).collect();
+            Some((part, self.solved_with(right, &springs)?))
+        })?;
+        let part = part.max(SOFTNESS[1]);
+        let uneven = |(i, soft): (usize, &f64)| part * soft * (1.0 + (GOLDEN * i as f64).fract());
+        let other: Vec<f64> = soft.iter().enumerate().map(uneven).collect();
+        let other = self.solved_with(right, &other)?;
+        let told = |((own, other), least): ((&f64, &f64), &f64)| {
+            let is_same = (own - other).abs() <= SETTLED * own.abs().max(other.abs()) + least;
+            if is_same { *own } else { f64::NAN }
+        };
+        Some(found.iter().zip(&other).zip(least).map(told).collect())
+    }
+
+    fn solved_with(&mut self, right: &[f64], springs: &[f64]) -> Option<Vec<f64>> {
+        let Derivatives { hessian, jacobian, .. } = &self.derivatives;
+        let sigma: Vec<f64> = self.sigma.iter().zip(springs).map(|(own, it)| own + it).collect();
+        if self.factor.factor(hessian, jacobian, &sigma, &self.d) != Inertia::Correct {
+            return None;
+        }
+        let mut found = right.to_vec();
+        self.factor.solve(&mut found);
+        found.iter().all(|it| it.is_finite()).then_some(found)
     }
 
     /// Which variables a bound holds, whose springs become hard; none if the inertia is wrong with

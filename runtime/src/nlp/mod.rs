@@ -13,8 +13,10 @@ mod conclusion;
 pub mod convex;
 pub(crate) mod covariance;
 mod curvature;
+mod implied;
 pub mod interior_point;
 pub(crate) mod multiplier_estimate;
+pub(crate) mod parametric;
 mod scaling;
 #[cfg(test)]
 mod tests;

@@ -38,6 +38,15 @@ pub(crate) mod covariance {
     pub(crate) const TINY: f64 = 1e-20;
     /// What does not hold a variable within so many times its size does not hold it.
     pub(crate) const SOFT: f64 = 100.0;
+    /// Where a solution may be anywhere along some direction it moves as little as it can: springs
+    /// are these parts of what changes the objective by its size when a variable moves by its own.
+    pub(crate) const SOFTNESS: [f64; 4] = [0.0, 1e-10, 1e-9, 1e-8];
+    /// What changes by more where these are up to twice as stiff, by multiples of the golden ratio,
+    /// depends on them.
+    pub(crate) const SETTLED: f64 = 1e-3;
+    /// A part of its size by which a variable does not move.
+    pub(crate) const NOT_MOVED: f64 = 1e-10;
+    pub(crate) const GOLDEN: f64 = 0.618_033_988_749_895;
     /// What a bound holds is held by a spring so much stiffer than the rest.
     pub(crate) const HARD: f64 = 1e12;
     /// A variable is at a bound if it is as near as this part of its size.
@@ -47,6 +56,9 @@ pub(crate) mod covariance {
     pub(crate) const CLOSE: f64 = 1e-12;
     /// A variable is at least this part of the width of its bounds.
     pub(crate) const LEAST: f64 = 1e-2;
+    /// A row that gives way by less than this part of what it does without equations follows from
+    /// these.
+    pub(crate) const IMPLIED: f64 = 1e-10;
     /// A smaller component of a direction does not belong to it.
     pub(crate) const SMALL: f64 = 0.1;
 }

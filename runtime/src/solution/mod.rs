@@ -20,5 +20,5 @@ pub use minimum::{ControlSlopes, control_slopes};
 pub use outcome::{Attempt, ChainOutcome, Limiting, Outcome};
 pub(crate) use pause::gain as gain_of_pauses;
 pub use quadrature::{integrals, sums_over_rows, terms_of_rows};
-pub(crate) use trajectory::switching_function_sizes;
 pub use trajectory::{ControlNodes, Trajectory, times};
+pub(crate) use trajectory::{Sampled, switching_function_sizes};

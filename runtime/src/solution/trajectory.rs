@@ -5,6 +5,7 @@ use super::lagrangian::{end_multipliers, path_multipliers};
 use crate::linalg::Stages;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
+use crate::transcribe::interval::Point;
 use crate::transcribe::mesh::Mesh;
 use crate::transcribe::{TranscribedNlp, interval};
 
@@ -85,6 +86,51 @@ impl Trajectory {
     }
 }
 
+/// Signals along `v` with their rates.
+pub(crate) struct Sampled {
+    /// `N + 1` times.
+    pub time: Vec<f64>,
+    /// One column per state, `N + 1` entries each; so are their rates.
+    pub states: Vec<Vec<f64>>,
+    pub rates: Vec<Vec<f64>>,
+    /// One column per control, `N` entries each: its mean over the interval; so are their slopes.
+    pub controls: Vec<Vec<f64>>,
+    pub slopes: Vec<Vec<f64>>,
+    /// All of `p`.
+    pub parameters: Vec<f64>,
+}
+
+impl Sampled {
+    pub fn new(nlp: &TranscribedNlp, v: &[f64]) -> Self {
+        let problem = nlp.problem();
+        let (points, parameters) = (points(nlp, problem, v), nlp.parameters_at(v));
+        let time = times(problem, &parameters);
+        let duration = time[time.len() - 1] - time[0];
+        let mut rates = sample(&*problem.dynamics, &points, &parameters);
+        rates.truncate(problem.layout.x);
+        rates.iter_mut().flatten().for_each(|it| *it /= duration);
+        Sampled {
+            states: (0..problem.layout.x).map(|i| points.column(1 + i).to_vec()).collect(),
+            controls: controls(nlp, v),
+            slopes: slopes(nlp, v, &time),
+            rates,
+            time,
+            parameters,
+        }
+    }
+}
+
+/// How fast each control changes over each interval, from its first value to its last.
+fn slopes(nlp: &TranscribedNlp, v: &[f64], time: &[f64]) -> Vec<Vec<f64>> {
+    let [starts, ends] = [&nlp.interval().start, &nlp.interval().end].map(|it| table(nlp, it, v));
+    let first = 1 + nlp.problem().layout.x;
+    let of = |control: usize| {
+        let both = starts.column(first + control).iter().zip(ends.column(first + control));
+        both.zip(time.windows(2)).map(|((a, b), pair)| (b - a) / (pair[1] - pair[0])).collect()
+    };
+    (0..nlp.problem().layout.u).map(of).collect()
+}
+
 /// The largest absolute value of each switching function along `v`.
 pub(crate) fn switching_function_sizes(nlp: &TranscribedNlp, v: &[f64]) -> Vec<f64> {
     let problem = nlp.problem();
@@ -105,13 +151,9 @@ pub(crate) fn sample(
 
 /// `[t | x | u]` at all grid points: at the start of each interval, and at the end of the last.
 fn points(nlp: &TranscribedNlp, problem: &Problem, v: &[f64]) -> Columns {
-    let (stages, interval, layout) = (nlp.chain(), nlp.interval(), &problem.layout);
+    let (stages, layout) = (nlp.chain(), &problem.layout);
     let columns = 1 + layout.x + layout.u;
-    let [mut starts, mut ends] = [(); 2].map(|()| Columns::new(columns, stages.intervals));
-    for (point, table) in [(&interval.start, &mut starts), (&interval.end, &mut ends)] {
-        point.set_times(nlp.mesh(), table);
-        point.load(stages, layout, v, table);
-    }
+    let [starts, ends] = [&nlp.interval().start, &nlp.interval().end].map(|it| table(nlp, it, v));
     let mut points = Columns::new(columns, stages.intervals + 1);
     for i in 0..columns {
         let (last, others) = points.column_mut(i).split_last_mut().expect("a last grid point");
@@ -119,6 +161,15 @@ fn points(nlp: &TranscribedNlp, problem: &Problem, v: &[f64]) -> Columns {
         *last = ends.column(i).last().copied().unwrap_or(0.0);
     }
     points
+}
+
+/// `[t | x | u]` at a point of every interval.
+fn table(nlp: &TranscribedNlp, point: &Point, v: &[f64]) -> Columns {
+    let (stages, layout) = (nlp.chain(), &nlp.problem().layout);
+    let mut table = Columns::new(1 + layout.x + layout.u, stages.intervals);
+    point.set_times(nlp.mesh(), &mut table);
+    point.load(stages, layout, v, &mut table);
+    table
 }
 
 /// The mean of each control over each interval.

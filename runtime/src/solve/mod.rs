@@ -11,6 +11,7 @@ mod continuation;
 mod covariance;
 mod grid_sequencing;
 pub mod multistart;
+mod parametric;
 mod prolong;
 pub mod refinement;
 mod run;
@@ -26,6 +27,7 @@ use crate::solution::{Trajectory, gain_of_pauses};
 use crate::transcribe::chain::{ChainNlp, own_multipliers};
 pub use by_parameters::by_parameters_of_chain;
 pub use covariance::covariance_of_chain;
+pub use parametric::{Movement, movement_of_chain};
 use run::Run;
 use std::ops::ControlFlow;
 

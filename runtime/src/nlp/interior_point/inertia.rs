@@ -94,6 +94,11 @@ impl Kkt {
         false
     }
 
+    /// Whether some regularisation gave the right inertia.
+    pub(super) fn is_factored(&self) -> bool {
+        self.regularization <= LARGEST_REGULARIZATION
+    }
+
     /// Whether the last factorisation was that of Newton's own matrix.
     pub(super) fn is_newton(&self) -> bool {
         self.regularization == 0.0

@@ -152,6 +152,9 @@ impl Kkt {
         slopes: &Slopes,
         step: &mut SearchDirection,
     ) -> Option<f64> {
+        if !self.is_factored() {
+            return None;
+        }
         let variables = formulation.variables;
         self.right.fill(0.0);
         let free = (0..variables).filter(|i| !formulation.fixed[*i]);

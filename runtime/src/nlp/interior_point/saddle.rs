@@ -40,7 +40,9 @@ impl Algorithm {
         }
         let least = self.least_curvature(nlp, found);
         let Some((mut step, curvature)) = self.lowest_curvature(nlp, least) else {
-            return Departure::NotNeeded;
+            // Without a matrix nothing is known of its curvature: another factorisation may say it.
+            self.is_saddle = !self.kkt.is_factored();
+            return if self.is_saddle { Departure::Impossible } else { Departure::NotNeeded };
         };
         let length = self.stretch(&self.reach(nlp), &mut step);
         let gain = -0.5 * curvature * length * length;
@@ -218,12 +220,15 @@ impl Algorithm {
         2.0 * found.least_gain(self.options.tol) / dot(&reach, &reach)
     }
 
-    /// How far each variable may go: by its size, or its unit.
+    /// How far each variable may go: by its size, its unit, its nominal magnitude, which is 1 in a
+    /// scaled program, or between its bounds: one newton moves no truck.
     fn reach(&self, nlp: &dyn Nlp) -> Vec<f64> {
         let quantities = nlp.quantities();
-        let mut sizes = quantities.units;
-        for (i, value) in quantities.variables.iter().zip(&self.at.y) {
-            sizes[*i] = sizes[*i].max(value.abs());
+        let mut sizes: Vec<f64> = quantities.units.iter().map(|unit| unit.max(1.0)).collect();
+        let bounds = nlp.variable_bounds().iter().map(|it| it.upper - it.lower);
+        for ((i, value), range) in quantities.variables.iter().zip(&self.at.y).zip(bounds) {
+            let range = if range.is_finite() { range } else { 0.0 };
+            sizes[*i] = sizes[*i].max(value.abs()).max(range);
         }
         quantities.variables.iter().map(|i| sizes[*i]).collect()
     }

@@ -163,8 +163,9 @@ pub(crate) mod saddle {
     pub(crate) const SIGN_PATTERNS: usize = 4;
     /// Steps where curvature says nothing, as parts of the sizes, from short to long.
     pub(crate) const SHORT_STEPS: [f64; 3] = [1e-3, 1e-2, 1e-1];
-    /// A quantity that is smaller than this part of its nominal magnitude is 0.
-    pub(crate) const NOTHING: f64 = 1e-6;
+    /// A quantity that is smaller than this part of its nominal magnitude is 0: to a flat point
+    /// steps come no nearer than by a root of the tolerance.
+    pub(crate) const NOTHING: f64 = 1e-3;
     /// A bound that is farther away than this part of the size of a variable is not active.
     pub(crate) const AWAY: f64 = 1e-2;
     /// Curvature is negative if it is more than this part of its terms.

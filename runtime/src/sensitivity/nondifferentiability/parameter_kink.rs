@@ -13,6 +13,9 @@ use std::sync::Arc;
 const NEARER: f64 = 16.0;
 const STAYS: f64 = 0.5;
 
+/// So many times are looked at, at most.
+const GUESSES: usize = 64;
+
 /// What is less than this part of the terms, and of the value, is rounding.
 const UNKNOWN: f64 = 5e-14;
 
@@ -62,19 +65,22 @@ fn begins(lineariser: &Lineariser, tape: &Tape) -> Vec<Columns> {
     points
 }
 
-/// The guess where the first steps of all regimes begin, and the first of its controls; nothing
-/// where controls are given.
+/// The guess where some of the steps begin, and the first of its controls; nothing where controls
+/// are given. At one time alone a kink may be multiplied by 0.
 fn guesses<'a>(
     lineariser: &'a Lineariser,
     tape: &Tape,
 ) -> impl Iterator<Item = (&'a Arc<dyn Function>, Columns, usize)> {
-    let points = if lineariser.is_guessed() { begins(lineariser, tape) } else { Vec::new() };
+    let starts = tape.pieces.iter().filter_map(|piece| match piece {
+        Piece::Step { start, .. } => Some(start.time),
+        _ => None,
+    });
+    let all: Vec<f64> = starts.filter(|_| lineariser.is_guessed()).collect();
+    let apart = all.len().div_ceil(GUESSES).max(1);
     let guess = &lineariser.system.guess;
     let controls = lineariser.system.layout.x;
-    points.into_iter().map(move |point| {
-        let tau = lineariser.tau(point.column(0)[0]);
-        (guess, Columns::of_point(&[tau]), controls)
-    })
+    let times: Vec<f64> = all.into_iter().step_by(apart).collect();
+    times.into_iter().map(move |time| (guess, Columns::of_point(&[lineariser.tau(time)]), controls))
 }
 
 /// Where the steps begin, if one of these parameters is on a kink of the right side. Whether that

@@ -58,7 +58,8 @@ pub(crate) fn natural_order(a: &str, b: &str) -> Ordering {
             }
             (None, None) => return a.cmp(b),
             (x, y) => {
-                (left.next(), right.next());
+                left.next();
+                right.next();
                 x.cmp(&y)
             }
         };

@@ -56,6 +56,32 @@ fn a_staged_flight_meets_its_expectation() {
     assert!(output.status.success(), "{}", stderr(&output));
 }
 
+/// A phase for each file of `--data`, in every form of output: the files stand elsewhere.
+#[test]
+fn phases_of_files_are_told_by_number_and_file() {
+    let folder = folder("phases_of_files", &[]);
+    let files = format!("{}/../tests/classics/fits", env!("CARGO_MANIFEST_DIR"));
+    let model = classic("fits/cups");
+    std::fs::copy(&model, folder.join("cups.fdc")).expect("the model can be copied");
+    let lost = fdcc(&folder, &["check", "cups.fdc"], "");
+    expect_exit(&lost, 1, "no file beside the copy");
+    assert!(stdout(&lost).contains("no file matches `cups_*.csv`"), "{}", stdout(&lost));
+    let output = fdcc(&folder, &["solve", "cups.fdc", "--data", &files, "--out", "."], "");
+    expect_exit(&output, 0, &stderr(&output));
+    let words = stdout(&output);
+    assert!(words.contains("cup[3].x in 7 rows of cups_10.csv"), "{words}");
+    assert!(folder.join("cups.cup[2].csv").exists(), "{words}");
+    let text = std::fs::read_to_string(folder.join("cups.sol.json")).expect("it was written");
+    let document: Value = serde_json::from_str(&text).expect("it is JSON");
+    for (phase, end) in [("cup[1]", 20.0), ("cup[2]", 30.0), ("cup[3]", 12.0)] {
+        let time = column(&document["phases"][phase]["time"]);
+        assert_eq!(time.last(), Some(&end), "{phase}");
+    }
+    assert_eq!(document["residuals"][1]["data"], "cups_2.csv");
+    let hot = number(&document["free"]["cup[3].hot"]);
+    assert!((hot - 92.0090864).abs() < 1e-5, "{hot}");
+}
+
 /// What is not solved yet: `tests/tests/chains.rs` says why.
 const UNSOLVED: &[&str] = &["goddard_arcs"];
 

@@ -35,7 +35,7 @@ pub use compile::residuals::{Readings, Residuals, residuals};
 pub use compile::{Expectations, expectations};
 pub use compile::{ProblemCode, compile, compile_by_parameters};
 pub use compile::{compile_sensitivities, compile_simulation, compile_smoothed};
-pub use data::{Files, Table};
+pub use data::{Files, Table, matches};
 pub use expressions::graph::builtins;
 pub use expressions::{graph, interval, kernels};
 pub use kinks::{Kinks, is_kink, parameters_on_kinks, side_of, without_kinks};

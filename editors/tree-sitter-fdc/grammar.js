@@ -51,7 +51,8 @@ module.exports = grammar({
     function: ($) => item("fn", field("name", $.name), $.names, "=", $._expression),
     names: ($) => seq("(", list($.name), ")"),
     data: ($) =>
-      item("data", field("name", $.name), "=", "csv", "(", $.string, ")", "columns", list($.column)),
+      item("data", field("name", $.name), "=", $._table),
+    _table: ($) => seq("csv", "(", $.string, ")", "columns", list($.column)),
     // Where nothing but a name can stand, here and behind a dot, a reserved word is one.
     column: ($) => seq(field("name", $.name), optional($.unit)),
     free: ($) => item("free", field("name", $.name), optional($._range), optional($.guess_value)),
@@ -100,8 +101,9 @@ module.exports = grammar({
 
     guess: ($) => item("guess", block($.binding)),
     binding: ($) => seq($.name, "=", $._expression),
-    phase: ($) => item("phase", field("name", $.name), optional($.like), block($._item)),
+    phase: ($) => item("phase", field("name", $.name), optional($.like), optional($.each), block($._item)),
     like: ($) => seq("like", $.name),
+    each: ($) => seq("for", "each", $._table),
     link: ($) => item("link", $.name, "->", $.name, block(choice($.same, $.assignment))),
     same: (_) => "same",
     method: ($) => item("method", block($._setting)),

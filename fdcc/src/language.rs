@@ -107,6 +107,22 @@ impl Reading {
     fn meaning_of(&self, phase: Option<&str>) -> Option<&fdcc_compiler::Model> {
         let whole = self.analysis.model.as_ref()?;
         let Some(name) = phase else { return Some(whole) };
-        whole.phases.iter().map(|phase| &phase.model).find(|it| it.name == name)
+        // Of a phase for each file the first one speaks for all.
+        let first = format!("{name}[1]");
+        let mut phases = whole.phases.iter().map(|phase| &phase.model);
+        phases.find(|it| it.name == name || it.name == first)
+    }
+
+    /// The phases that were written as one for each file, with the name of its file.
+    pub fn files_of(&self, phase: &str) -> Vec<(&str, &str)> {
+        let phases = self.analysis.model.iter().flat_map(|model| &model.phases);
+        let of_each = phases.filter(|it| {
+            it.model.name.strip_prefix(phase).is_some_and(|rest| rest.starts_with('['))
+        });
+        let named = of_each.filter_map(|it| {
+            let table = it.model.tables.iter().find(|table| table.is_of_pattern)?;
+            Some((it.model.name.as_str(), table.file.as_str()))
+        });
+        named.collect()
     }
 }

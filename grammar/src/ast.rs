@@ -109,8 +109,8 @@ pub enum ItemKind {
     Fit { keyword: Span, data: Ident, signals: Vec<Fitted> },
     /// `guess { name = expr }`
     Guess { bindings: Vec<Binding> },
-    /// `phase name like other { items }`
-    Phase { name: Ident, like: Option<Ident>, items: Vec<Item> },
+    /// `phase name like other for each csv("files") columns t [s], x [m] { items }`
+    Phase { name: Ident, like: Option<Ident>, each: Option<Each>, items: Vec<Item> },
     /// `link a -> b { same  x := expr }`
     Link { from: Ident, to: Ident, same: Option<Span>, assignments: Vec<Assignment> },
     /// `method { settings }`
@@ -123,6 +123,15 @@ pub enum ItemKind {
     Plot { name: Ident, curves: Vec<Expr>, over: Expr, borders: Vec<Ident> },
     /// `expect { expr == expr within expr }`
     Expect { checks: Vec<Check> },
+}
+
+/// `for each csv("file*") columns t [s], x [m]`
+#[expect(missing_docs, reason = "the syntax above names its fields")]
+#[derive(Clone, Debug, PartialEq)]
+pub struct Each {
+    pub file: String,
+    pub file_span: Span,
+    pub columns: Vec<(Ident, Option<Unit>)>,
 }
 
 /// `[lower, upper]`

@@ -39,9 +39,13 @@ impl Data {
     pub fn files(self) -> DataFiles {
         match self {
             Data::Folder(folder) => DataFiles::in_folder(folder),
-            Data::Texts(texts) => DataFiles::from(move |name: &str| {
-                texts.get(name).cloned().ok_or_else(|| "no text was given for it".to_owned())
-            }),
+            Data::Texts(texts) => {
+                let names: Vec<String> = texts.keys().cloned().collect();
+                let text = move |name: &str| {
+                    texts.get(name).cloned().ok_or_else(|| "no text was given for it".to_owned())
+                };
+                DataFiles::from(text).with_names(move |_| Ok(names.clone()))
+            }
         }
     }
 }

@@ -59,6 +59,25 @@ def test_data_come_from_texts_and_folders(tmp_path):
         fdcc.compile(text, data={})
 
 
+def test_a_pattern_is_compared_with_the_names_of_texts(tmp_path):
+    text = """free p in [0, 9]
+    phase run for each csv("a*.csv") columns t, x {
+      time t in [0, run.t(end)]
+      state x start 0
+      dynamics { x' = p }
+      fit run: x sd 0.1
+    }"""
+    tables = {"a10.csv": "t,x\n1,0.5\n4,2\n", "a9.csv": "t,x\n1,0.5\n2,1\n", "b.csv": ""}
+    solution = fdcc.compile(text, data=tables).solve()
+    assert solution.free["p"] == pytest.approx(0.5)
+    assert [phase.time[-1] for phase in solution.phases.values()] == [2, 4]
+    for name, table in tables.items():
+        (tmp_path / name).write_text(table)
+    assert fdcc.compile(text, data=tmp_path).solve().free["p"] == pytest.approx(0.5)
+    with pytest.raises(fdcc.ModelError, match="no file matches"):
+        fdcc.compile(text, data={"b.csv": ""})
+
+
 def test_deep_models_do_not_end_the_process():
     import threading
 

@@ -155,6 +155,27 @@ def runs(p, d):
                            for name, (temperature, x0, _) in RUNS.items()])
 
 
+# The start of each cup, the last minute that was measured, and the seed of its noise.
+CUPS = {1: (85, 20, 31), 2: (70, 30, 32), 10: (92, 12, 33)}
+
+
+def cooled(rate, room, start, t):
+    """By Newton's law."""
+    return room + (start - room) * np.exp(-rate * t)
+
+
+def cups_data():
+    def cup(start, last, seed):
+        t = np.arange(0, last + 1.0, 2)
+        return table('t x', t, noisy(cooled(0.08, 21, start, t), 0.3, seed))
+    return {f'cups_{number}': cup(*of) for number, of in CUPS.items()}
+
+
+def cups(p, d):
+    return np.concatenate([(cooled(p[0], p[1], start, d[f'cups_{number}'][0]) - d[f'cups_{number}'][1]) / 0.3
+                           for number, start in zip(CUPS, p[2:])])
+
+
 MASS, PULL = 1.5, (9.0, 2.1)
 
 
@@ -238,6 +259,7 @@ FITS = {
         lambda p, d: (p[1] * np.exp(-p[0] * d['robust_decay'][0]) - d['robust_decay'][1]) / 0.1, loss='soft_l1'),
     'missing_rows': Fit(missing_data, {'k1': 1, 'k2': 0.5}, missing),
     'two_runs': Fit(runs_data, {'k': 0.3, 'energy': 5}, runs),
+    'cups': Fit(cups_data, {'rate': 0.1, 'room': 20, **{f'hot{i}': 80 for i in (1, 2, 3)}}, cups),
     'slider_friction': Fit(slider_data, {'mu': 0.3, 'v0': 1}, slider),
     'bouncing_ball': Fit(
         lambda: bounce_data('bouncing_ball'), {'e': 0.7, 'v0': 0.1},

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use fdcc::DataFiles;
-use fdcc_compiler::{Analysis, Model, analyze_with, compile_chain};
+use fdcc_compiler::{Analysis, Files, Model, analyze_with, compile_chain};
 use fdcc_grammar::{Diagnostic, ParseCache, Severity};
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::{self, ChainOutcome, Outcome, Refusal};
@@ -15,17 +15,25 @@ pub type Changes<'a> = &'a [(&'a str, &'a str)];
 
 /// The data files of the examples.
 pub fn data_files() -> DataFiles {
-    DataFiles::from(|name| {
+    let all = || {
         let folders = ["models", "tests/right", "tests/classics/fits"];
-        let texts = folders.map(|it| DataFiles::in_folder(repository().join(it)).text(name));
+        folders.map(|it| DataFiles::in_folder(repository().join(it)))
+    };
+    let text = move |name: &str| {
+        let texts = all().map(|files| files.text(name));
         texts.into_iter().reduce(Result::or).expect("there is a folder")
-    })
+    };
+    let names = move |pattern: &str| {
+        let names = all().map(|files| files.names(pattern));
+        names.into_iter().flatten().reduce(|all, more| [all, more].concat()).ok_or("none".into())
+    };
+    DataFiles::from(text).with_names(names)
 }
 
 /// What is found in a text, with the data files of the examples.
 pub fn analyze(text: &str) -> Analysis {
     let files = data_files();
-    analyze_with(&mut ParseCache::default(), text, Some(&|name: &str| files.text(name)))
+    analyze_with(&mut ParseCache::default(), text, Some(&files))
 }
 
 /// The meaning of a model without errors, with the data files of the examples.

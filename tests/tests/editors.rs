@@ -10,7 +10,7 @@ use fdcc_grammar::words::{WORDS, Word, inner_words};
 use fdcc_tests::pages::check_file;
 use fdcc_tests::repository;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fs;
 
 /// The words of each kind, in the order in which the compiler lists them.
@@ -22,7 +22,8 @@ fn words() -> BTreeMap<&'static str, Vec<&'static str>> {
     let items = WORDS.iter().filter(|it| it.item.is_some());
     let mut clauses: Vec<&str> =
         items.clone().flat_map(|it| inner_words(it.text)).copied().collect();
-    clauses.retain(|word| WORDS.iter().all(|it| it.text != *word));
+    let mut seen = HashSet::new();
+    clauses.retain(|word| WORDS.iter().all(|it| it.text != *word) && seen.insert(*word));
     clauses.extend(items.filter(|it| !it.is_reserved).map(|it| it.text));
     BTreeMap::from([
         ("items", reserved(true).collect()),

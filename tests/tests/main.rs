@@ -25,6 +25,7 @@ mod emitted;
 mod envelope;
 mod estimates;
 mod events;
+mod experiments;
 mod factorisations;
 mod final_times;
 mod fixes;

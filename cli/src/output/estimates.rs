@@ -98,8 +98,11 @@ impl Estimates {
     }
 
     fn fit(&self, document: &Document) -> String {
-        let signals: Vec<String> = document.residuals.iter().map(Residual::words).collect();
-        let mut words = format!(" fit   {}", signals.join(", "));
+        let signals = document.residuals.iter().take(MOST_SIGNALS).map(Residual::words);
+        let mut words = format!(" fit   {}", signals.collect::<Vec<_>>().join(", "));
+        if let more @ 1.. = document.residuals.len().saturating_sub(MOST_SIGNALS) {
+            words += &format!(" and {more} more");
+        }
         match (self.degrees_of_freedom, self.deviation) {
             (Some(count), Some(deviation)) => {
                 let residuals = match self.noise {
@@ -131,6 +134,9 @@ impl Estimates {
         format!(" est   {name} {value}{error}{}", correlated.unwrap_or_default())
     }
 }
+
+/// Of more signals, as in experiments of many files, only these are named.
+const MOST_SIGNALS: usize = 6;
 
 /// A smaller correlation is not told.
 const TOLD: f64 = 0.5;

@@ -36,15 +36,20 @@ pub fn check(tree: &ast::Model) -> Checked {
 }
 
 /// The same with the texts of data files; without them a model with data waits for them.
-pub fn check_with(tree: &ast::Model, files: Option<&Files>) -> Checked {
+pub fn check_with(tree: &ast::Model, files: Option<&dyn Files>) -> Checked {
     check_given(tree, files, None)
 }
 
 /// The same, where signals are given from outside on so many equal intervals of time.
-pub fn check_given(tree: &ast::Model, files: Option<&Files>, intervals: Option<usize>) -> Checked {
+pub fn check_given(
+    tree: &ast::Model,
+    files: Option<&dyn Files>,
+    intervals: Option<usize>,
+) -> Checked {
     let mut unread = Vec::new();
+    let tree = &*data::written_out(tree, files, &mut unread);
     let tables =
-        files.map_or_else(Tables::new, |files| data::read(&tree.items, files, &mut unread));
+        files.map_or_else(Tables::default, |files| data::read(&tree.items, files, &mut unread));
     let mut found = check_tables(tree, &tables, intervals);
     if !unread.is_empty() {
         found.model = None;
@@ -52,6 +57,7 @@ pub fn check_given(tree: &ast::Model, files: Option<&Files>, intervals: Option<u
         found.diagnostics.extend(unread);
         sort(&mut found.diagnostics);
     }
+    data::told_once(tree, &mut found.diagnostics);
     found
 }
 
@@ -90,7 +96,10 @@ fn check_tables(tree: &ast::Model, tables: &Tables, intervals: Option<usize>) ->
     });
     if let Some(model) = &model {
         diagnostics.extend(told_early(model));
-        diagnostics.extend(numbers(model).iter().flat_map(|it| model.misplaced_rows(it)));
+        let parts = std::iter::once(model).chain(model.phases.iter().map(|it| &it.model));
+        diagnostics.extend(parts.flat_map(|part| {
+            numbers(part).map_or(Vec::new(), |numbers| part.misplaced_rows(&numbers))
+        }));
         diagnostics.extend(numbers(model).iter().flat_map(|it| model.misplaced_times(it)));
         diagnostics.extend(preflight::check(model, tree));
         sort(&mut diagnostics);

@@ -35,12 +35,12 @@ pub fn analyze(text: &str) -> Analysis {
 
 /// The same with a cache of the text as it was before, which spares reading what has not changed,
 /// and with the texts of data files.
-pub fn analyze_with(cache: &mut ParseCache, text: &str, files: Option<&Files>) -> Analysis {
+pub fn analyze_with(cache: &mut ParseCache, text: &str, files: Option<&dyn Files>) -> Analysis {
     analyze_parsed(text, parse_with(cache, text), files)
 }
 
 /// Checks a text that has been read.
-pub(crate) fn analyze_parsed(text: &str, parsed: Parse, files: Option<&Files>) -> Analysis {
+pub(crate) fn analyze_parsed(text: &str, parsed: Parse, files: Option<&dyn Files>) -> Analysis {
     let mut diagnostics = parsed.diagnostics;
     let (mut model, mut units) = (None, Vec::new());
     if !parsed.tree.items.is_empty() {

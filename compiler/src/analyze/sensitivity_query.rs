@@ -15,7 +15,7 @@ const WORD: &str = "minimize ";
 /// What a tree without errors means with another objective: any expression that has a value once
 /// the run is over. A `report` may stand in it by name. The diagnostics are about that expression
 /// alone, and so are their places.
-pub fn check_with_objective(tree: &ast::Model, of: &str, files: Option<&Files>) -> Checked {
+pub fn check_with_objective(tree: &ast::Model, of: &str, files: Option<&dyn Files>) -> Checked {
     let start = tree.items.iter().map(|item| item.span.end as usize).max().unwrap_or(0) + 1;
     let parsed = parse(&format!("{:start$}{WORD}{of}", ""));
     let first = (start + WORD.len()) as u32;

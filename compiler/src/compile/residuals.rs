@@ -48,7 +48,7 @@ pub fn residuals(model: &Model) -> Vec<Residuals> {
         let sum = &model.sums[square.root.sum];
         Residuals {
             name: square.name.clone(),
-            data: model.tables[sum.table].name.clone(),
+            data: model.tables[sum.table].called().to_owned(),
             is_fit: sum.is_fit,
             weights,
             readings: readings.map(|[measured, factors]| Readings { measured, factors }),

@@ -5,6 +5,7 @@
 //! same left side. The start of a state that a link hands over is left behind, and so is what is
 //! expected.
 
+use super::each::numbered;
 use super::scope::{declared, kind_word};
 use super::{closest, text};
 use fdcc_grammar::ast::{self, Condition, Ident, Item, ItemKind};
@@ -43,7 +44,7 @@ impl<'t> Copies<'t> {
     fn new(items: &'t [Item]) -> Self {
         let mut phases = HashMap::new();
         for item in items {
-            if let ItemKind::Phase { name, like, items } = &item.kind {
+            if let ItemKind::Phase { name, like, items, .. } = &item.kind {
                 phases.entry(name.name.as_str()).or_insert((item, &items[..], like.as_ref()));
             }
         }
@@ -51,7 +52,7 @@ impl<'t> Copies<'t> {
     }
 
     fn item(&mut self, item: &'t Item, diagnostics: &mut Vec<Diagnostic>) -> Item {
-        let ItemKind::Phase { name, like: Some(like), items } = &item.kind else {
+        let ItemKind::Phase { name, like: Some(like), each, items } = &item.kind else {
             return item.clone();
         };
         let items = match self.line(name, like) {
@@ -61,7 +62,7 @@ impl<'t> Copies<'t> {
                 items.clone()
             }
         };
-        let kind = ItemKind::Phase { name: name.clone(), like: None, items };
+        let kind = ItemKind::Phase { name: name.clone(), like: None, each: each.clone(), items };
         Item { kind, span: item.span }
     }
 
@@ -124,6 +125,15 @@ impl<'t> Copies<'t> {
     }
 
     fn no_phase(&self, like: &Ident) -> Diagnostic {
+        if self.phases.contains_key(numbered(&like.name, 1).as_str()) {
+            let message = format!("`{}` is a phase for each file", like.name);
+            let label = "one of them is not like another";
+            return Diagnostic::new(Code::WrongKind, message, like.span, label).help(format!(
+                "write what both share into a phase, and let both be like it: \
+                 `phase {} like base for each csv(...) ...`",
+                like.name
+            ));
+        }
         let other = self
             .items
             .iter()

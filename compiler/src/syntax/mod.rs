@@ -1,6 +1,7 @@
 //! What can be said of a syntax tree before anything in it has a meaning: which names it declares,
 //! in which order their definitions are evaluated, and how it is written.
 
+pub(crate) mod each;
 pub(crate) mod functions;
 pub(crate) mod like;
 pub(crate) mod order;

@@ -1,9 +1,11 @@
 //! What stands outside of all phases, as one of them sees it: of the other phases only those that
 //! it names, so that a text of n phases is not gone through n times.
 
+use super::each::phase_named;
 use super::scope::declared;
 use super::walk;
-use fdcc_grammar::ast::{Assignment, Ident, Item, ItemKind};
+use fdcc_grammar::ast::{Assignment, Expr, ExprKind, Ident, Item, ItemKind};
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// The items outside of all phases, with these.
@@ -35,7 +37,7 @@ impl<'a> Outer<'a> {
         }
         let of_each = outer.shared.iter().filter(|at| concerns_phases(&items[**at]));
         let named = of_each.flat_map(|at| mentioned(&items[*at]));
-        let named: Vec<usize> = named.flat_map(|name| outer.places(name)).collect();
+        let named: Vec<usize> = named.flat_map(|name| outer.places(&name)).collect();
         outer.shared.extend(named);
         outer
     }
@@ -44,20 +46,30 @@ impl<'a> Outer<'a> {
     pub fn seen_by(&self, phase: &Ident, items: &'a [Item]) -> Vec<&'a Item> {
         let mut seen = self.shared.clone();
         for name in items.iter().flat_map(mentioned) {
-            seen.extend(self.places(name));
+            seen.extend(self.places(&name));
         }
         for line in self.handed.get(phase.name.as_str()).into_iter().flatten() {
             seen.extend(self.places(&line.name.name));
-            walk::names(&line.value, &mut |name, _| seen.extend(self.places(name)));
+            in_value(&line.value, &mut |name| seen.extend(self.places(&name)));
         }
         seen.sort_unstable();
         seen.dedup();
         seen.into_iter().map(|at| &self.items[at]).collect()
     }
 
-    fn places(&self, name: &str) -> impl Iterator<Item = usize> {
-        self.phases.get(name).into_iter().flatten().copied()
+    fn places(&self, name: &str) -> Vec<usize> {
+        self.phases.get(name).cloned().unwrap_or_default()
     }
+}
+
+/// The names in an expression, those of numbered phases among them.
+fn in_value<'a>(value: &'a Expr, see: &mut dyn FnMut(Cow<'a, str>)) {
+    walk::names(value, &mut |name, _| see(Cow::Borrowed(name)));
+    walk::visit(value, &mut |inner| {
+        if matches!(inner.kind, ExprKind::Index(..)) {
+            phase_named(inner).into_iter().for_each(&mut *see);
+        }
+    });
 }
 
 /// Whether each phase looks into an item: a definition, or what speaks of its motion.
@@ -73,10 +85,10 @@ fn concerns_phases(item: &Item) -> bool {
 }
 
 /// The names in an item; those of parts are not among them.
-fn mentioned(item: &Item) -> Vec<&str> {
-    let mut names: Vec<&str> = declared(item).map(name).into_iter().collect();
+fn mentioned(item: &Item) -> Vec<Cow<'_, str>> {
+    let mut names: Vec<Cow<'_, str>> = declared(item).map(name).into_iter().collect();
     for expr in walk::expressions(item) {
-        walk::names(expr, &mut |name, _| names.push(name));
+        in_value(expr, &mut |name| names.push(name));
     }
     match &item.kind {
         ItemKind::Dynamics { equations } => {
@@ -95,6 +107,6 @@ fn mentioned(item: &Item) -> Vec<&str> {
     names
 }
 
-fn name(it: &Ident) -> &str {
-    &it.name
+fn name(it: &Ident) -> Cow<'_, str> {
+    Cow::Borrowed(&it.name)
 }

@@ -1,6 +1,7 @@
 //! Declarations: which names there are, and what kind of thing each is.
 
 use super::closest;
+use super::each::numbered;
 use fdcc_grammar::ast::{self, Ident, Item, ItemKind};
 use fdcc_grammar::{Code, Diagnostic, Fix, Span};
 use std::cell::Cell;
@@ -67,8 +68,32 @@ impl<'a> Scope<'a> {
         self.by_name.get(name).copied()
     }
 
+    /// How many phases of this name were written as one, for each of several files.
+    pub fn phases_of(&self, name: &str) -> Option<usize> {
+        let is_there = |at: &usize| self.find(&numbered(name, *at)).is_some();
+        Some((1..).take_while(is_there).count()).filter(|count| *count > 0)
+    }
+
+    /// "`run` is a phase for each file": neither a phase nor, outside of it, a data set.
+    fn of_each_file(&self, name: &str, span: Span) -> Option<Diagnostic> {
+        let count = self.phases_of(name)?;
+        let [first, last] = [1, count].map(|at| numbered(name, at));
+        let message = format!("`{name}` is a phase for each file");
+        let label = match count {
+            1 => format!("which one? there is `{first}`"),
+            _ => format!("which one? there are `{first}` to `{last}`"),
+        };
+        Some(Diagnostic::new(Code::WrongKind, message, span, label).help(format!(
+            "write `{first}.STATE(end)` and the like; its rows are known within it: \
+             `fit {name}: ...` stands in `phase {name}`, and so does `sum(k in {name}, ...)`"
+        )))
+    }
+
     /// "There is no such name", with the nearest one that there is, or else how to declare it.
     pub fn unknown(&self, name: &str, span: Span, extra: &[&str], declaration: &str) -> Diagnostic {
+        if let Some(found) = self.of_each_file(name, span) {
+            return found;
+        }
         let found = Diagnostic::new(
             Code::UnknownName,
             format!("nothing called `{name}` here"),
@@ -100,7 +125,9 @@ fn is_built_in(new: Declaration<'_>) -> bool {
 }
 
 fn duplicate(name: &Ident, first: Span) -> Diagnostic {
-    let message = format!("`{}` is declared twice", name.name);
+    // `run[1]` was written as `run`.
+    let written = name.name.split('[').next().unwrap_or_default();
+    let message = format!("`{written}` is declared twice");
     Diagnostic::new(Code::DuplicateName, message, name.span, "declared again")
         .label(first, "first declared here")
         .help("rename one of them, or remove it")

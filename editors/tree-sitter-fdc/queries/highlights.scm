@@ -13,7 +13,7 @@
 
 [
   ; words: clauses
-"csv" "columns" "on" "falling" "rising" "most" "then" "hold" "sd" "like" "same" "smooth" "kernel" "grid" "steps" "scheme" "lagged" "continue" "over" "with" "signal" "at" "fit" "plot"
+"csv" "columns" "on" "falling" "rising" "most" "then" "hold" "sd" "like" "for" "each" "same" "smooth" "kernel" "grid" "steps" "scheme" "lagged" "continue" "over" "with" "signal" "at" "fit" "plot"
 ] @keyword
 
 (start_free "free" @keyword)

@@ -30,8 +30,8 @@ fn read(path: &Path) -> String {
 /// Words that begin items in a tree: what `editor_texts` writes for the compiler.
 fn item_words(node: Node<'_>, text: &str, words: &mut Vec<String>) {
     let mut cursor = node.walk();
-    // What a phase is like is a part of its head.
-    let is_item = |child: &Node<'_>| child.is_named() && child.kind() != "like";
+    // What a phase is like, and for what it stands, are parts of its head.
+    let is_item = |child: &Node<'_>| child.is_named() && !matches!(child.kind(), "like" | "each");
     for child in node.children(&mut cursor).filter(is_item) {
         let first = child.child(0);
         if let (Some(first), "file" | "phase" | "ERROR") = (first, node.kind()) {

@@ -81,9 +81,8 @@ impl Model {
     /// The same with another objective: any expression that has a value at the end, such as
     /// `x(end)`. The places of what is found are in that expression.
     pub fn with_objective(&self, of: &str) -> Checked {
-        let load = loader(self.files.as_ref());
         let tree = parse(&self.source.text).tree;
-        let checked = check_with_objective(&tree, of, load.as_deref());
+        let checked = check_with_objective(&tree, of, for_compiler(self.files.as_ref()));
         let files = self.files.clone();
         let found = Checked::new(self.source.clone(), checked.model, Vec::new(), files);
         Checked { diagnostics: Arc::new(checked.diagnostics), ..found }
@@ -93,9 +92,8 @@ impl Model {
 impl Model {
     /// The same, where signals are given from outside on so many equal intervals; all values stay.
     pub(crate) fn with_given_signals(&self, intervals: usize) -> Result<Model, Error> {
-        let load = loader(self.files.as_ref());
         let tree = parse(&self.source.text).tree;
-        let checked = check_given(&tree, load.as_deref(), Some(intervals));
+        let checked = check_given(&tree, for_compiler(self.files.as_ref()), Some(intervals));
         let mut meaning = checked.model.ok_or(Error::Model(checked.diagnostics))?;
         meaning.take_values(&self.meaning).map_err(Error::Model)?;
         Ok(self.with_meaning(meaning))
@@ -104,13 +102,12 @@ impl Model {
 
 /// Reads and checks a text: the one way in which the library does.
 pub(crate) fn analyze(cache: &mut ParseCache, text: &str, files: Option<&DataFiles>) -> Analysis {
-    analyze_with(cache, text, loader(files).as_deref())
+    analyze_with(cache, text, for_compiler(files))
 }
 
 /// Data files as the compiler wants them.
-fn loader(files: Option<&DataFiles>) -> Option<Box<Files<'_>>> {
-    let files = files?;
-    Some(Box::new(|name: &str| files.text(name)))
+fn for_compiler(files: Option<&DataFiles>) -> Option<&dyn Files> {
+    files.map(|files| files as &dyn Files)
 }
 
 /// The text of some bytes, and what is wrong if they are none.

@@ -176,6 +176,7 @@ impl Marks {
             | Rule::equation
             | Rule::check => Row::Alone,
             Rule::piecewise | Rule::switch => return self.read_sides(pair),
+            Rule::each => return self.read_columns(pair, Row::Alone),
             _ => return,
         };
         self.row(start, row);

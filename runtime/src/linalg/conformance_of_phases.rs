@@ -149,6 +149,54 @@ fn tie(
     }
 }
 
+/// Experiments: phases beside each other that share an unknown. Each begins at one of its own,
+/// which nothing but its start reads, and another one is read by its stages.
+fn apart(count: usize, random: &mut Random) -> Tied {
+    let size = Stages {
+        intervals: 4,
+        states: 1,
+        controls: 0,
+        inner: 0,
+        globals: 2,
+        local_constraints: 0,
+        coupling_constraints: 0,
+    };
+    let all = vec![size; count];
+    let own: Vec<Case> = all.iter().map(|it| Case::new(*it, false, false, false, random)).collect();
+    let first_unknown: usize = all.iter().map(|it| it.globals().start).sum();
+    let mut phases = places(&all, first_unknown);
+    for (j, phase) in phases.iter_mut().enumerate() {
+        phase.globals = [j, 2 * count].map(|at| first_unknown + at).to_vec();
+    }
+    let mut whole = untied(&phases, &own, first_unknown + 2 * count + 1);
+    whole.sigma.extend((0..2 * count + 1).map(|_| 1.0 + 0.5 * random.next()));
+    whole.fixed.extend(vec![false; 2 * count + 1]);
+    for (j, phase) in phases.iter().enumerate() {
+        whole.fixed[phase.first()].fill(false);
+        let start = (first_unknown + count + j, -1.0);
+        condition(vec![(phase.first().start, 1.0), start], &mut whole);
+    }
+    whole.stages.coupling_constraints = whole.d.len();
+    Tied { phases, whole }
+}
+
+/// However many there are: two unknowns.
+#[test]
+fn phases_beside_each_other_carry_nothing_of_the_others() {
+    let mut random = Random(7);
+    for count in [2, 3, 20] {
+        let Tied { phases, whole } = apart(count, &mut random);
+        assert!(whole.is_regular());
+        let equality: Vec<bool> = whole.d.iter().map(|d| *d == 0.0).collect();
+        let matrices = (&whole.hessian, &whole.jacobian);
+        let mut factor = PhasedRiccati::new(&phases, matrices, &whole.fixed, &equality)
+            .unwrap_or_else(|why| panic!("{count} phases: {why}"));
+        whole.check("beside each other", &mut factor, 1, &mut random);
+        let borders: Vec<usize> = (0..count).map(|j| factor.border(j)).collect();
+        assert!(borders.iter().all(|it| *it <= 2), "{borders:?}");
+    }
+}
+
 #[test]
 fn phases_are_solved_as_the_whole_and_their_inertia_is_known() {
     let mut random = Random(5);

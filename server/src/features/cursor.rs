@@ -131,7 +131,10 @@ impl<'t> CursorContext<'t> {
                 None => self.item,
             };
         if bracket == '{' && block == "phase" {
-            self.phase = Some(self.back(0));
+            let word = self.before.iter().rposition(|it| *it == "phase");
+            let own = word.and_then(|at| self.before.get(at + 1)).copied();
+            // What it takes over from another phase has the names of that.
+            self.phase = if self.back(1) == "like" { Some(self.back(0)) } else { own };
         }
         self.open.push(Open { bracket, before: self.back(0), is_close, block, commas: 0 });
     }
@@ -159,11 +162,11 @@ fn is_of_word(character: char) -> bool {
     character.is_alphanumeric() || character == '_'
 }
 
-/// `coast`, `pos` of `coast.pos.`
+/// `coast`, `pos` of `coast.pos.`; `run` of `run[2].`
 fn path<'t>(before: &[&'t str]) -> Vec<&'t str> {
     let mut path = Vec::new();
     let mut rest = before;
-    while let [outer @ .., name, "."] = rest {
+    while let [outer @ .., name, "[", _, "]", "."] | [outer @ .., name, "."] = rest {
         if !name.starts_with(|c: char| c.is_alphabetic() || c == '_') {
             break;
         }
@@ -186,6 +189,10 @@ mod tests {
             (place.path.clone(), place.phase, place.item),
             (vec!["coast", "pos"], Some("boost"), "end")
         );
+        let place = CursorContext::at_end_of(
+            "phase run for each csv(\"a*.csv\") columns t [s], x [m] {\n  fit run: run[2].",
+        );
+        assert_eq!((place.path.clone(), place.phase), (vec!["run"], Some("run")));
         let place = CursorContext::at_end_of("let a = f(1, g(2), ");
         assert_eq!(place.inside().map(|it| (it.before, it.commas)), Some(("f", 2)));
         assert!(CursorContext::at_end_of("param a = 1 # abo").is_silent);

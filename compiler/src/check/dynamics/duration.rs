@@ -19,6 +19,10 @@ use fdcc_grammar::{Code, Diagnostic, Fix};
 /// Reports unknowns that may make the duration 0 or negative.
 pub(crate) fn check(facts: &mut Facts<'_, '_>, found: &mut Vec<Diagnostic>) {
     let meaning = &mut *facts.meaning;
+    let is_free = |input: &u32| matches!(meaning.symbols[*input as usize], Symbol::Free(_));
+    if !meaning.graph.inputs_of(&meaning.interval).iter().any(is_free) {
+        return;
+    }
     let duration = meaning.graph.sub(meaning.interval[1], meaning.interval[0]);
     let mut unknowns = Vec::new();
     let mut inputs: Vec<f64> = vec![0.0; meaning.symbols.len()];

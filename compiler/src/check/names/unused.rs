@@ -5,6 +5,7 @@
 //! count. Names that begin with `_` are silent, and so are states, whose equation is their use, and
 //! time.
 
+use crate::syntax::each::phase_named;
 use crate::syntax::scope::{declared, kind_word};
 use crate::syntax::walk;
 use fdcc_grammar::ast::{self, Expr, ExprKind, Item, ItemKind};
@@ -131,7 +132,7 @@ fn mentioned<'a>(item: &'a Item, phases: &HashSet<&str>) -> Vec<&'a str> {
         walk::names(expr, &mut |name, _| names.push(name));
         let mut of_phase = |inner: &'a Expr| {
             if let ExprKind::Part(base, part) = &inner.kind
-                && matches!(&base.kind, ExprKind::Name(name) if phases.contains(name.as_str()))
+                && phase_named(base).is_some_and(|name| phases.contains(&*name))
             {
                 names.push(&part.name);
             }

@@ -24,6 +24,9 @@ impl<'a> Elaborator<'a> {
     /// `callee(arguments)`.
     pub fn call(&mut self, expr: &'a Expr, callee: &'a Expr, arguments: &'a [Argument]) -> Value {
         if let [Argument::End(_) | Argument::Start(_)] = arguments {
+            if let Some(value) = self.column_at_an_end(callee, &arguments[0]) {
+                return value;
+            }
             return self.at_an_end(callee, &arguments[0], expr.span);
         }
         let ExprKind::Name(name) = &callee.kind else {

@@ -25,14 +25,33 @@ impl<'a> Elaborator<'a> {
         self.admit(name, value, span)
     }
 
-    /// The table of a data set, among those of the model; none if it was not read.
-    pub fn table_of(&mut self, at: usize) -> Option<usize> {
-        let ItemKind::Data { file_span, .. } = self.scope.declarations[at].item.kind else {
+    /// `obs.t(end)`: a column in the last row, and with `start` in the first one; nothing of what
+    /// is no column of a data set.
+    pub fn column_at_an_end(&mut self, callee: &'a Expr, end: &Argument) -> Option<Value> {
+        let ExprKind::Part(base, part) = &callee.kind else { return None };
+        let ExprKind::Name(name) = &base.kind else { return None };
+        if self.here.local(name).is_some() {
+            return None;
+        }
+        let at = self.scope.find(name)?;
+        let ItemKind::Data { columns, .. } = &self.scope.declarations[at].item.kind else {
             return None;
         };
-        let known = self.model.tables.iter().position(|table| table.place == file_span);
+        let column = columns.iter().position(|column| column.0.name == part.name)?;
+        let Some(table) = self.table_of(at) else { return Some(Value::default()) };
+        let values = &self.model.tables[table].columns[column];
+        let value = if matches!(end, Argument::End(_)) { values.last() } else { values.first() };
+        value.copied().map(|value| self.constant(value))
+    }
+
+    /// The table of a data set, among those of the model; none if it was not read.
+    pub fn table_of(&mut self, at: usize) -> Option<usize> {
+        let ItemKind::Data { file, file_span, .. } = &self.scope.declarations[at].item.kind else {
+            return None;
+        };
+        let known = self.model.tables.iter().position(|table| table.is(*file_span, file));
         known.or_else(|| {
-            self.model.tables.push(self.tables.get(&file_span)?.clone());
+            self.model.tables.push(self.tables.get(*file_span, file)?.clone());
             Some(self.model.tables.len() - 1)
         })
     }

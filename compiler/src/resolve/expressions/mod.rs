@@ -15,6 +15,7 @@ mod vectors;
 use super::elaborator::Elaborator;
 use super::elaborator::value::{Parts, Reads, Traits, Value};
 use crate::syntax::DEEPEST;
+use crate::syntax::each::{numbered, phase_named};
 use crate::syntax::{scope, walk};
 use crate::units;
 use fdcc_grammar::ast::{Expr, ExprKind, Ident, ItemKind, Unit};
@@ -189,15 +190,15 @@ impl<'a> Elaborator<'a> {
 
     /// `obs.t` of a data set, known by name, without a value here; `coast.h` of a phase.
     fn part_of_container(&mut self, base: &'a Expr, part: &'a Ident, span: Span) -> Option<Value> {
-        let ExprKind::Name(name) = &base.kind else { return None };
-        if self.here.local(name).is_some() {
+        let name = phase_named(base)?;
+        if self.here.local(&name).is_some() {
             return None;
         }
-        let at = self.scope.find(name)?;
+        let at = self.scope.find(&name)?;
         let item = self.scope.declarations[at].item;
         match &item.kind {
             ItemKind::Data { columns, .. } => Some(self.column_named(at, columns, part)),
-            ItemKind::Phase { items, .. } => Some(self.of_phase(name, items, part, span)),
+            ItemKind::Phase { items, .. } => Some(self.of_phase(&name, items, part, span)),
             _ => None,
         }
     }
@@ -235,6 +236,11 @@ impl<'a> Elaborator<'a> {
     }
 
     fn index(&mut self, base: &'a Expr, index: usize, span: Span) -> Value {
+        if let ExprKind::Name(name) = &base.kind
+            && let Some(count) = self.scope.phases_of(name)
+        {
+            return self.experiment(name, index, count, span);
+        }
         let value = self.evaluate(base);
         let length = match &value.parts {
             Parts::Unknown => return value,
@@ -261,6 +267,18 @@ impl<'a> Elaborator<'a> {
             format!("write `[1]` to `[{length}]`")
         };
         self.fail_shape(found.help(help))
+    }
+
+    /// `run[2]` without a name of that phase, or beyond the last one.
+    fn experiment(&mut self, name: &str, index: usize, count: usize, span: Span) -> Value {
+        if (1..=count).contains(&index) {
+            return self.no_value(&numbered(name, index), "phase", span);
+        }
+        let message = format!("there is no phase `{}`", numbered(name, index));
+        let label = format!("{count} files, counted from 1");
+        let found = Diagnostic::new(Code::UnknownPart, message, span, label);
+        let last = numbered(name, count);
+        self.fail(found.help(format!("the phases are `{}` to `{last}`", numbered(name, 1))))
     }
 
     /// `x'` in a guess: the derivative in real time of what was guessed for `x`.

@@ -59,7 +59,9 @@ impl<'a> Elaborator<'a> {
             ItemKind::Link { from, to, same, assignments } => {
                 self.link(from, to, *same, assignments)
             }
-            ItemKind::Data { file_span, .. } if !self.tables.contains_key(file_span) => {
+            ItemKind::Data { file, file_span, .. }
+                if self.tables.get(*file_span, file).is_none() =>
+            {
                 self.not_yet(*file_span, "a model whose data was not read")
             }
             _ => {}

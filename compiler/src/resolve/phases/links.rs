@@ -147,6 +147,14 @@ impl<'a> Elaborator<'a> {
                     Diagnostic::new(Code::WrongKind, message, name.span, "a phase is needed here")
                         .help("name a `phase`")
                 }
+                None if self.scope.phases_of(&name.name).is_some() => {
+                    let message = format!("`{}` is a phase for each file", name.name);
+                    let label = "none of them follows another phase";
+                    Diagnostic::new(Code::WrongKind, message, name.span, label).help(
+                        "they stand beside each other, each with a time of its own; what they \
+                         share is declared outside of them",
+                    )
+                }
                 None => {
                     let example = format!("phase {} {{ ... }}", name.name);
                     self.scope.unknown(&name.name, name.span, &[], &example)

@@ -64,7 +64,7 @@ impl Elaborator<'_> {
         let Elaborator { phases, graph, symbols, model, .. } = self;
         let meaning = &mut phases[phase].meaning;
         let table = &model.tables[sum.table];
-        let known = meaning.model.tables.iter().position(|it| it.place == table.place);
+        let known = meaning.model.tables.iter().position(|it| it.is(table.place, &table.file));
         let at = known.unwrap_or_else(|| {
             meaning.model.tables.push(table.clone());
             meaning.model.tables.len() - 1

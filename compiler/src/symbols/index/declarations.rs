@@ -3,7 +3,7 @@
 use super::{Definition, Kind, Meaning, Names, Occurrence, Role};
 use crate::syntax::scope;
 use fdcc_grammar::Span;
-use fdcc_grammar::ast::{self, Ident, Item, ItemKind};
+use fdcc_grammar::ast::{self, Each, Ident, Item, ItemKind};
 
 /// Adds all definitions.
 pub(super) fn collect(tree: &ast::Model, names: &mut Names) {
@@ -35,8 +35,16 @@ fn own(item: &Item, phase: Option<usize>, names: &mut Names) {
                 declare(names, column, Kind::Column, item.span, Some(data));
             }
         }
-        ItemKind::Phase { name, items: inner, .. } => {
+        ItemKind::Phase { name, each, items: inner, .. } => {
             let phase = entry(names, name, Kind::Phase);
+            if let Some(each) = each {
+                // Within it, its name is that of the rows of its file.
+                let head = Span { end: end_of(each), ..item.span };
+                let rows = declare(names, name, Kind::Data, head, Some(phase));
+                for (column, _) in &each.columns {
+                    declare(names, column, Kind::Column, head, Some(rows));
+                }
+            }
             items(inner, Some(phase), names);
         }
         ItemKind::Jump { name, .. } => {
@@ -61,6 +69,14 @@ fn own(item: &Item, phase: Option<usize>, names: &mut Names) {
             }
         }
     }
+}
+
+/// Where the head of a phase for each file ends.
+fn end_of(each: &Each) -> u32 {
+    each.columns
+        .last()
+        .map_or(each.file_span, |it| it.1.as_ref().map_or(it.0.span, |it| it.span))
+        .end
 }
 
 /// What a declaration without anything inside declares.

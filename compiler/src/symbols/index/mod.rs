@@ -177,9 +177,20 @@ impl Names {
         }
     }
 
-    /// Every place where a definition is named, its own among them.
+    /// Every place where a definition is named, its own among them. A phase for each file and the
+    /// rows of its file have one name.
     pub fn of(&self, definition: usize) -> impl Iterator<Item = &Occurrence> {
-        self.occurrences.iter().filter(move |it| it.meaning == Meaning::Declared(definition))
+        let place = self.definitions[definition].span;
+        self.occurrences.iter().filter(move |it| match it.meaning {
+            Meaning::Declared(at) => self.definitions[at].span == place,
+            _ => false,
+        })
+    }
+
+    /// Whether a definition is that of the rows of a phase for each file, within that phase.
+    pub fn is_rows(&self, definition: usize) -> bool {
+        let it = &self.definitions[definition];
+        it.within.is_some_and(|outer| self.definitions[outer].span == it.span)
     }
 
     /// What belongs to a definition.

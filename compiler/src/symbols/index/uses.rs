@@ -69,8 +69,10 @@ impl Walker<'_> {
             self.unit(unit);
         }
         match &item.kind {
-            ItemKind::Phase { name, like, items } => {
+            ItemKind::Phase { name, like, each, items } => {
                 like.iter().for_each(|it| self.name(it, Role::Read));
+                let columns = each.iter().flat_map(|it| &it.columns);
+                columns.filter_map(|it| it.1.as_ref()).for_each(|it| self.unit(it));
                 let outer = self.phase;
                 self.phase = self.names.definition_named(name);
                 self.items(items);
@@ -196,7 +198,9 @@ impl Walker<'_> {
     /// What a name stands for in a phase, or outside of all: what is outside comes first, as in
     /// `resolve`.
     fn find(&self, name: &str, phase: Option<usize>) -> Option<usize> {
-        self.part_of(None, name).or_else(|| self.part_of(Some(phase?), name))
+        let own = || self.part_of(Some(phase?), name);
+        let rows = own().filter(|at| self.names.is_rows(*at));
+        rows.or_else(|| self.part_of(None, name)).or_else(own)
     }
 
     /// What belongs to a phase, a vector, a function or a data set, or to none; a phase has what
@@ -304,6 +308,14 @@ impl Walker<'_> {
         let (mut base, mut parts) = (whole, Vec::new());
         while let ExprKind::Part(inner, part) = &base.kind {
             parts.push(part);
+            base = inner;
+        }
+        // `run[2].x`: a phase of several that were written as one.
+        if let ExprKind::Index(inner, _) = &base.kind
+            && let ExprKind::Name(name) = &inner.kind
+            && let Meaning::Declared(at) = self.meaning(name, local, locals, function)
+            && self.names.definitions[at].kind == Kind::Phase
+        {
             base = inner;
         }
         let ExprKind::Name(name) = &base.kind else {

@@ -5,6 +5,7 @@ use super::requirement::Reason;
 use super::value::{Part, Value, pairwise};
 use super::{Inference, Operand, side};
 use crate::syntax::DEEPEST;
+use crate::syntax::each::phase_named;
 use crate::syntax::{scope, walk};
 use crate::units::dimension::Dimension;
 use crate::units::dimension::ratio::Ratio;
@@ -169,13 +170,13 @@ impl<'a> Inference<'a> {
 
     /// `obs.t` of a data set, `coast.h` of a phase.
     fn part_of_container(&self, base: &Expr, part: &Ident) -> Option<Value> {
-        let ExprKind::Name(name) = &base.kind else { return None };
-        if self.local(name).is_some() {
+        let name = phase_named(base)?;
+        if self.local(&name).is_some() {
             return None;
         }
-        let at = match self.phases.get(name.as_str()) {
+        let at = match self.phases.get(&*name) {
             Some(phase) => phase.find(&part.name).map(|at| phase.declarations[at].name.span),
-            None => Some(self.column(name, part)?),
+            None => Some(self.column(&name, part)?),
         };
         Some(at.and_then(|at| self.values.get(&at).cloned()).unwrap_or_default())
     }

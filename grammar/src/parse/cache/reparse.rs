@@ -118,6 +118,7 @@ fields! {
     Check { left, relation, right, within, span }
     Condition { first, rest, span }
     Diagnostic { code, severity, message, labels, help, fixes }
+    Each { file, file_span, columns }
     Edit { span, replacement }
     Equation { factor, state, relation, relation_span, right, span }
     Expr { kind, span }
@@ -193,7 +194,7 @@ variants! {
         Objective { sense, keyword, value },
         Fit { keyword, data, signals },
         Guess { bindings },
-        Phase { name, like, items },
+        Phase { name, like, each, items },
         Link { from, to, same, assignments },
         Method { settings },
         Sweep { lists },

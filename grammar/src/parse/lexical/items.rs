@@ -186,7 +186,8 @@ fn names_a_column(so_far: &SoFar<'_, '_>, at: usize) -> bool {
         return so_far.follows_columns(at);
     };
     let begins_next = words::always_begins(next.text) || begins_soft(so_far, at + 1);
-    let goes_on = matches!(next.text, "," | "[" | "}") || begins_next;
+    let ends_head = next.text == "{" && so_far.word() == "phase";
+    let goes_on = matches!(next.text, "," | "[" | "}") || begins_next || ends_head;
     so_far.follows_columns(at) && (goes_on || !so_far.tokens[at].begins_line)
 }
 

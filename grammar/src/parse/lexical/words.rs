@@ -144,7 +144,7 @@ pub fn inner_words(item: &str) -> &'static [&'static str] {
         "data" => &["csv", "columns"],
         "fit" => &["sd"],
         "plot" => &["over", "with"],
-        "phase" => &["like"],
+        "phase" => &["like", "for", "each", "csv", "columns"],
         "link" => &["same"],
         "method" => &["smooth", "kernel", "grid", "steps", "scheme", "lagged", "continue"],
         "state" => &["start", "in", "free"],

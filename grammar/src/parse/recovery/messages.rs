@@ -82,13 +82,22 @@ impl<'t> ErrorContext<'_, 't> {
     /// The right form, as help.
     pub fn example(&self, diagnostic: Diagnostic) -> Diagnostic {
         match self.form {
+            _ if self.is_for_each() => diagnostic.help(EACH),
             Some(form) => {
                 diagnostic.help(format!("{} looks like this: `{}`", form.noun, form.example))
             }
             None => diagnostic,
         }
     }
+
+    /// Whether it is the head of a phase for each file.
+    fn is_for_each(&self) -> bool {
+        self.word == "phase" && self.before().iter().any(|token| token.text == "for")
+    }
 }
+
+const EACH: &str = "a phase for each file looks like this: \
+                    `phase run for each csv(\"runs*.csv\") columns t [s], x [m] { ... }`";
 
 const OPERANDS: &[Rule] =
     &[Rule::expression, Rule::operand, Rule::negation, Rule::argument, Rule::factor, Rule::arm];
@@ -117,6 +126,7 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::direction], "`falling` or `rising`", None),
     (&[Rule::kw_most], "`most`", None),
     (&[Rule::kw_hold], "`hold`", None),
+    (&[Rule::kw_each], "`each`", None),
     (&[Rule::kw_csv], "`csv(\"...\")`", None),
     (&[Rule::kw_columns], "`columns`", None),
     (&[Rule::kw_sigma], "`sigma`", Some("only the smoothing is continued: `continue sigma = 0.1, \
@@ -128,10 +138,10 @@ const MISSING: &[(&[Rule], &str, Option<&str>)] = &[
     (&[Rule::unit_factor, Rule::unit_name], "a unit", None),
     (&[Rule::digits, Rule::exponent], "a whole number", None),
     (&[Rule::colon], "`:`", None),
+    (&[Rule::left_brace], "`{`", None),
     (&[Rule::comma], "`,`", None),
     (&[Rule::prime], "the `'` of a derivative", None),
     (&[Rule::names, Rule::left_parenthesis], "`(`", None),
-    (&[Rule::left_brace], "`{`", None),
     (&[Rule::name, Rule::weight, Rule::column, Rule::entry, Rule::fitted], "a name", None),
     (&[Rule::kw_in], "a range `in [from, to]`", None),
     (&[Rule::right_parenthesis], "`)`", None),

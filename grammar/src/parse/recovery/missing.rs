@@ -215,7 +215,7 @@ pub(super) fn comma(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
         (context.previous()?, context.next().filter(|next| next.kind == Kind::Word)?);
     let is_next = match context.word {
         "metric" => context.text(context.at + 1) == ":",
-        "data" => context.expects(&[Rule::comma, Rule::column]) && !next.begins_line,
+        "data" | "phase" => context.expects(&[Rule::comma, Rule::column]) && !next.begins_line,
         _ => false,
     };
     is_next.then(|| missing_after(context, "`,`", previous))

@@ -260,7 +260,11 @@ fn right_sign(context: &ErrorContext<'_, '_>, token: &Token<'_>) -> Option<(Span
 /// A word that is nearly one of those that the item goes on with: `smooth sigma = 0.1 kernl tanh`.
 pub(super) fn misspelt_word(context: &ErrorContext<'_, '_>) -> Option<Diagnostic> {
     let token = context.next().filter(|token| token.kind == Kind::Word)?;
-    let meant = words::closest(token.text, words::inner_words(context.word).iter().copied())?;
+    let inner = words::inner_words(context.word).iter().copied();
+    let meant = match token.text {
+        "foreach" if context.word == "phase" => "for each",
+        word => words::closest(word, inner)?,
+    };
     if meant == token.text {
         return None;
     }

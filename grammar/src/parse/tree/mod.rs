@@ -75,7 +75,9 @@ impl Reader<'_> {
         match pair.as_rule() {
             Rule::phase => {
                 let like = child(pair, Rule::like).map(|like| ident(self, &like));
-                ItemKind::Phase { name: ident(self, pair), like, items: self.phase_items(pair) }
+                let each = child(pair, Rule::each).map(|each| self.table(&each));
+                let (name, items) = (ident(self, pair), self.phase_items(pair));
+                ItemKind::Phase { name, like, each, items }
             }
             Rule::dynamics => ItemKind::Dynamics { equations: self.equations(pair) },
             Rule::equation => ItemKind::Dynamics { equations: vec![self.equation(pair)] },
@@ -135,11 +137,17 @@ impl Reader<'_> {
     }
 
     fn data(&self, pair: &Pair<'_, Rule>, name: Ident) -> ItemKind {
-        let string = child(pair, Rule::string).expect("a data set has a file");
+        let Each { file, file_span, columns } = self.table(pair);
+        ItemKind::Data { name, file, file_span, columns }
+    }
+
+    /// `csv("...") columns ...` of a data set, or of a phase for each file.
+    fn table(&self, pair: &Pair<'_, Rule>) -> Each {
+        let string = child(pair, Rule::string).expect("a table has a file");
         let columns =
             children(pair, Rule::column).map(|column| (ident(self, &column), self.unit(&column)));
         let file = string.as_str().trim_matches('"').to_owned();
-        ItemKind::Data { name, file, file_span: self.span(&string), columns: columns.collect() }
+        Each { file, file_span: self.span(&string), columns: columns.collect() }
     }
 
     fn guess_value(&mut self, pair: &Pair<'_, Rule>) -> Option<Expr> {
@@ -156,8 +164,14 @@ impl Reader<'_> {
     }
 
     fn phase_items(&mut self, pair: &Pair<'_, Rule>) -> Vec<Item> {
-        let keyword_or_punctuation =
-            [Rule::kw_phase, Rule::name, Rule::like, Rule::left_brace, Rule::right_brace];
+        let keyword_or_punctuation = [
+            Rule::kw_phase,
+            Rule::name,
+            Rule::like,
+            Rule::each,
+            Rule::left_brace,
+            Rule::right_brace,
+        ];
         let items = pair
             .clone()
             .into_inner()

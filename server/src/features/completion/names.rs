@@ -15,6 +15,14 @@ pub struct Scope<'c> {
     phase: Option<String>,
 }
 
+/// Whether the name of a definition stands for it at a place: that of a phase for each file stands
+/// for the rows of the file within it, and for the phase elsewhere.
+fn is_meant(names: &Names, definition: usize, place: &CursorContext<'_>) -> bool {
+    let is_rows = names.is_rows(definition);
+    let of_each = is_rows || names.parts_of(definition).any(|at| names.is_rows(at));
+    !of_each || is_rows == (place.phase == Some(names.definitions[definition].name.as_str()))
+}
+
 impl<'c> Scope<'c> {
     /// Around a place in a phase, or outside of all.
     pub fn new(context: &'c Context<'c>, phase: Option<&str>) -> Self {
@@ -45,8 +53,10 @@ impl<'c> Scope<'c> {
         let owner = row.map_or(last, |words| words[2]);
         self.found(|names, at| {
             let it = &names.definitions[at];
-            let is_inside = it.within.is_some_and(|outer| names.definitions[outer].name == owner);
-            is_inside && !matches!(it.kind, Kind::Argument | Kind::Row)
+            let is_inside = it.within.is_some_and(|outer| {
+                names.definitions[outer].name == owner && is_meant(names, outer, place)
+            });
+            is_inside && !names.is_rows(at) && !matches!(it.kind, Kind::Argument | Kind::Row)
         })
     }
 

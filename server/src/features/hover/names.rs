@@ -26,9 +26,8 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
             let known = model.and_then(|it| it.surface(phase, &full)).map(surface);
             known.unwrap_or_default().into_iter().chain(solved()).collect()
         }
-        Kind::Argument | Kind::Column | Kind::Row | Kind::Phase | Kind::Model | Kind::Data => {
-            Vec::new()
-        }
+        Kind::Phase => model.and_then(|it| files(&it.files_of(&full))).into_iter().collect(),
+        Kind::Argument | Kind::Column | Kind::Row | Kind::Model | Kind::Data => Vec::new(),
         _ => {
             let information = model.and_then(|it| it.information(phase, &full));
             information.map(|it| facts(&it)).unwrap_or_default()
@@ -44,7 +43,12 @@ pub fn told(context: &Context<'_>, definition: usize) -> String {
 fn declaration(context: &Context<'_>, it: &Definition) -> String {
     let span = if it.kind == Kind::Row { it.span } else { it.item };
     let text = &context.snapshot().text.text[span.range()];
+    let all = &context.snapshot().names().definitions;
+    let rows = all.iter().find(|rows| rows.kind == Kind::Data && rows.span == it.span);
     match it.kind {
+        Kind::Phase | Kind::Data if rows.is_some_and(|rows| rows.within.is_some()) => {
+            rows.map_or("", |rows| &context.snapshot().text.text[rows.item.range()]).to_owned()
+        }
         Kind::Phase => format!("phase {}", it.name),
         Kind::Model => format!("model {}", it.name),
         _ if text.lines().count() > MOST_LINES => {
@@ -53,6 +57,17 @@ fn declaration(context: &Context<'_>, it: &Definition) -> String {
         }
         _ => text.to_owned(),
     }
+}
+
+/// Which phase is that of which file.
+fn files(all: &[(&str, &str)]) -> Option<String> {
+    let lines = all.iter().take(MOST_LINES).map(|(phase, file)| format!("\n- `{phase}`: `{file}`"));
+    let more = match all.len().saturating_sub(MOST_LINES) {
+        0 => String::new(),
+        more => format!("\n- and {more} more"),
+    };
+    let count = format!("a phase for each of {} files", all.len());
+    (!all.is_empty()).then(|| count + "\n" + &lines.collect::<String>() + &more)
 }
 
 /// `state, in m/s (found from the equations)`

@@ -66,6 +66,10 @@ impl Lifetimes {
         for (item, span) in spans.iter_mut() {
             *span = alone(phases.len(), item, of(item));
         }
+        let rows_alone = spans.clone();
+        for (item, span) in spans.iter_mut().filter(|(item, _)| item.unknown().is_some()) {
+            *span = as_rows(item, of(item), &rows_alone).unwrap_or(*span);
+        }
         // Rows over unknowns alone die with the first of them.
         let known = spans.clone();
         for (item, span) in spans.iter_mut().filter(|(item, _)| matches!(item, Item::Row(_))) {
@@ -164,7 +168,9 @@ fn delay(spans: &mut Spans, j: usize, phase: &PhaseStages, kind: &dyn Fn(&Item) 
     // Without controls the end of a phase follows from its begin and its unknowns: one unknown may
     // make up for one row, such as the time at which a surface is reached.
     let is_paired = unknowns.len() <= 1 && unknowns.len() == ends.len();
-    if phase.stages.controls == 0 && !is_paired {
+    // Where no row leads to an earlier phase there is none that could make up for anything.
+    let is_apart = links.is_empty() && ends.is_empty();
+    if phase.stages.controls == 0 && !is_paired && !is_apart {
         waiting.extend(unknowns.into_iter().chain(ends));
     }
     for item in waiting {
@@ -199,6 +205,18 @@ fn kind(item: &Item, touched: &[Item]) -> Kind {
         (_, Some(_)) if touched.iter().any(is_link) => Kind::Link,
         (_, Some(_)) => Kind::Start,
     }
+}
+
+/// An unknown that rows alone read, such as one for the start of a phase, is there as long as
+/// these are.
+fn as_rows(unknown: &Item, touched: &[Item], spans: &Spans) -> Option<[usize; 2]> {
+    let rows: Vec<&Item> = touched.iter().filter(|it| *it != unknown).collect();
+    if !rows.iter().all(|it| matches!(it, Item::Row(_))) {
+        return None;
+    }
+    let lives = rows.iter().filter_map(|row| spans.get(*row));
+    let dies = lives.clone().map(|it| it[1]).min()?;
+    Some([lives.map(|it| it[0]).fold(dies, usize::max), dies])
 }
 
 /// Birth and death of a member of the border by the ends and stages that it touches.

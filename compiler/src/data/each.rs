@@ -138,10 +138,13 @@ pub(super) fn is_waiting(each: Option<&Each>, file: &str) -> bool {
 /// Leaves one of the findings that say the same of each phase, and a few of those that are about
 /// the files; they are in the order of the text.
 pub(crate) fn told_once(tree: &ast::Model, found: &mut Vec<Diagnostic>) {
-    let families = || tree.items.iter().filter(|item| each(item).is_some());
-    let is_inside = |place: Span| {
-        families().any(|item| item.span.start <= place.start && place.end <= item.span.end)
-    };
+    let families = tree.items.iter().filter(|item| each(item).is_some());
+    let families: Vec<Span> = families.map(|item| item.span).collect();
+    if families.is_empty() {
+        return;
+    }
+    let is_inside =
+        |place: Span| families.iter().any(|own| own.start <= place.start && place.end <= own.end);
     let mut kept: Vec<Diagnostic> = Vec::new();
     let mut more = 0;
     for it in found.drain(..) {

@@ -2,6 +2,7 @@
 
 use super::Solution;
 use super::certify::certificate;
+use super::families::is_same;
 use super::found::Found;
 use super::kink_gaps::is_tight;
 use super::report::Options;
@@ -58,8 +59,8 @@ fn better_of(
 ) -> Result<Solution, Certificate> {
     match (first, second()) {
         (Ok(first), Some(second)) => {
-            let worth = |it: &Solution| it.problem.sense * it.objective();
-            Ok(if worth(&second) < worth(&first) { second } else { first })
+            let [own, its] = [&first, &second].map(|it| it.problem.sense * it.objective());
+            Ok(if its < own && !is_same(its, own) { second } else { first })
         }
         (Err(_), Some(second)) => Ok(second),
         (first, None) => first,

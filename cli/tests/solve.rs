@@ -402,6 +402,29 @@ fn controls_of_every_shape_are_written_and_replayed() {
     }
 }
 
+/// `x = goal t` moves by `t`; a name that is mistyped is no parameter, and what has a kink no
+/// derivative.
+#[test]
+fn how_the_optimum_moves_is_told() {
+    let folder = ramp("moves");
+    let document = solved(&folder, &["ramp.fdc", "--wrt", "goal"]);
+    let moved = &document["derivatives"]["goal"];
+    let x = column(&moved["states"]["x"]);
+    let pairs = x.iter().zip(column(&moved["time"]));
+    pairs.for_each(|(by, t)| assert!((by - t).abs() < 1e-6, "{by} at {t}"));
+    assert!(document["free"] == moved["free"] && moved["junctions"] == serde_json::json!([]));
+    let told = fdcc(&folder, &["solve", "ramp.fdc", "--log", "none", "--wrt", "goal"], "");
+    assert!(stdout(&told).contains(" by    goal: states and controls move"), "{}", stdout(&told));
+    let wrong = fdcc(&folder, &["solve", "ramp.fdc", "--wrt", "gaol"], "");
+    expect_exit(&wrong, 3, "no parameter");
+    assert!(stderr(&wrong).contains("did you mean `goal`?"), "{}", stderr(&wrong));
+    let kinked = "param a = 0 time t in [0, 1] state x start 0 control u end x == 1
+        dynamics { x' = u + abs(a) } minimize integral(u^2)";
+    std::fs::write(folder.join("kinked.fdc"), kinked).expect("it can be written");
+    let document = solved(&folder, &["kinked.fdc", "--wrt", "a"]);
+    assert!(document["derivatives"]["a"].is_null(), "{}", document["derivatives"]);
+}
+
 /// The headline, the table, the verdict and the document tell which order was found; few long
 /// intervals are replayed as closely as many short ones.
 #[test]

@@ -40,6 +40,21 @@ def test_the_sensitivity_is_that_of_the_closed_form(hop):
     assert by["reach"].unit == "m^2/s per m"
 
 
+def test_the_optimum_moves_with_a_parameter(hop):
+    by = hop.solve().derivative("reach")  # x = reach * t at constant speed
+    assert by.states["x"] == pytest.approx(by.time)
+    assert set(np.round(by.controls["v"], 6)) == {1.0}
+    with pytest.raises(ValueError, match="there is no parameter `raech`; did you mean `reach`"):
+        hop.solve().derivative("raech")
+
+
+def test_a_saved_optimum_has_the_derivatives_that_were_asked_for(hop, tmp_path):
+    path = tmp_path / "hop.sol.json"
+    hop.solve().save(path)
+    with pytest.raises(ValueError, match="saved without a derivative by 'reach'"):
+        fdcc.Solution.load(path).derivative("reach")
+
+
 def test_arrays_are_the_memory_of_the_result(hop):
     x = hop.solve()["x"]
     again = x[1:3]

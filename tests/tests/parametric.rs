@@ -72,6 +72,23 @@ fn signals_move_at_times_that_stay() {
     }
 }
 
+/// `x = a t` and `u = a` whatever the unit and the range of `a` are; in SI.
+#[test]
+fn units_and_ranges_of_parameters_do_not_matter() {
+    let cases = [("a = 50 [cm]", "[m]"), ("a = 2 [km] in [2, 3]", "[km]"), ("a = 0 in [0, 1]", "")];
+    for (a, unit) in cases {
+        let text = format!(
+            "param {a} time t in [0, 1] state x {unit} start 0 control u {unit}
+             dynamics {{ x' = u }} end x == a minimize integral(u^2)"
+        );
+        let by_a = by(&solved(&model(&text)), "a");
+        let own = &by_a.phases[0];
+        for (t, by) in own.time.iter().zip(column(&own.states, "x")) {
+            assert!((by - t).abs() < 1e-6, "{text} {t}: {by}");
+        }
+    }
+}
+
 /// What `value` reads of optima beside each other, and its slope.
 fn difference(
     of: &Model,

@@ -26,6 +26,14 @@ impl Model {
         self.set_param_quantity(name, "", Quantity { value, dimension: None })
     }
 
+    /// The same in SI, also beyond its range: what is differentiated by is moved to both sides.
+    pub fn set_param_in_si(&mut self, name: &str, value: f64) -> Result<(), String> {
+        let index = self.params.iter().position(|param| param.place.name == name);
+        let index = index.ok_or_else(|| self.no_param(name))?;
+        self.give(index, value);
+        Ok(())
+    }
+
     fn set_param_quantity(
         &mut self,
         name: &str,

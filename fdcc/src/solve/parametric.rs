@@ -110,7 +110,7 @@ impl Solution {
         let change = CHANGE * if own.value == 0.0 { own.unit } else { own.value.abs() };
         let with = |part: f64| {
             let mut model = model.clone();
-            model.set_param_number(name, own.value + part * change).ok()?;
+            model.set_param_in_si(name, own.value + part * change).ok()?;
             compile_chain(&model).ok()
         };
         let (mut below, mut above) = (with(-0.5)?, with(0.5)?);

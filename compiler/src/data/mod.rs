@@ -26,7 +26,7 @@ pub trait Files {
     /// Why there is none, in words.
     fn text(&self, name: &str) -> Result<String, String>;
 
-    /// Names among which are those of all files that match a pattern, as [`matches`] says; others
+    /// Names among which are those of all files that match a pattern, as [`matches()`] says; others
     /// do no harm, and neither does their order.
     ///
     /// # Errors

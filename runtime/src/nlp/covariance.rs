@@ -18,7 +18,7 @@
 //! that holds it. So it is, too, where the Lagrangian falls along the variable: the curvature is
 //! then that in the other directions.
 
-use super::implied::implied;
+use super::implied::Equations;
 use super::tuning::covariance::{
     CLOSE, GOLDEN, HARD, LEAST, NEAR, SETTLED, SMALL, SOFT, SOFTNESS, TINY,
 };
@@ -27,6 +27,7 @@ use crate::linalg::dense::eigen::eigen;
 use crate::linalg::solvers::{Structure, prepare};
 use crate::linalg::{Factor, Inertia, Triplets};
 use crate::problem::{Bounds, Linear};
+use std::collections::HashSet;
 use std::ops::Range;
 
 /// What it is at a solution, by the places of the variables among those that were asked for.
@@ -188,19 +189,17 @@ impl System {
             let phase = if place.grid_point.is_some() { 0 } else { place.phase };
             (phase, place.origin.label.to_string())
         };
-        let rows: Vec<usize> = (0..d.len()).filter(is_active).collect();
-        let size = |(value, quantity): (&f64, &f64)| value.abs().max(*quantity).max(TINY);
-        let quantities = nlp.quantities();
-        let units = quantities.variables.iter().map(|it| quantities.units[*it]);
-        let units: Vec<f64> = units.collect();
-        let springs = v.iter().zip(&units).map(|it| size(it).powi(-2)).collect::<Vec<_>>();
-        let jacobian = (nlp.jacobian_structure(), &derivatives.jacobian[..]);
-        let hessian = derivatives.hessian.len();
-        let implied = implied(&mut *factor, jacobian, (&springs, &equality), hessian, &rows);
-        let forbidding = rows.into_iter().zip(implied).filter(|it| !it.1);
-        let mut active: Vec<_> = forbidding.map(|it| named(it.0)).collect();
-        active.sort();
-        active.dedup();
+        let springs = springs_of_sizes(nlp, v);
+        let (jacobian, hessian) = (&derivatives.jacobian[..], derivatives.hessian.len());
+        let rows = (nlp.jacobian_structure(), jacobian);
+        let mut equations = Equations::new(&mut *factor, rows, (&springs, &equality), hessian);
+        let mut active = HashSet::new();
+        for row in (0..d.len()).filter(is_active) {
+            let name = named(row);
+            if !active.contains(&name) && !equations.imply(row) {
+                active.insert(name);
+            }
+        }
         System { factor, derivatives, bounds, sigma, d, active: active.len(), fixed, equality, of }
     }
 
@@ -312,6 +311,14 @@ impl System {
         let equations = self.equality.iter().filter(|it| **it).count();
         variables.saturating_sub(equations + self.active + held.count())
     }
+}
+
+/// One over the square of the size of each variable, or of its unit.
+fn springs_of_sizes(nlp: &dyn Nlp, v: &[f64]) -> Vec<f64> {
+    let quantities = nlp.quantities();
+    let units = quantities.variables.iter().map(|it| quantities.units[*it]);
+    let spring = |(value, unit): (&f64, f64)| value.abs().max(unit).max(TINY).powi(-2);
+    v.iter().zip(units).map(spring).collect()
 }
 
 /// `z / distance` of a bound, 0 of none and of one that is not active: what its multiplier is

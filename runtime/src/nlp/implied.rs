@@ -13,29 +13,46 @@
 use super::tuning::covariance::IMPLIED;
 use crate::linalg::{Factor, Inertia, Triplets};
 
-/// Whether each of these rows follows from the equations; none where these depend on each other.
-pub(super) fn implied(
-    factor: &mut dyn Factor,
-    (structure, jacobian): (&Triplets, &[f64]),
-    (springs, equality): (&[f64], &[bool]),
-    hessian: usize,
-    rows: &[usize],
-) -> Vec<bool> {
-    let off = |is_equality: &bool| if *is_equality { 0.0 } else { f64::MAX.sqrt() };
-    let d: Vec<f64> = equality.iter().map(off).collect();
-    if factor.factor(&vec![0.0; hessian], jacobian, springs, &d) != Inertia::Correct {
-        return vec![false; rows.len()];
+/// The equations with their springs, factored.
+pub(super) struct Equations<'a> {
+    factor: &'a mut dyn Factor,
+    structure: &'a Triplets,
+    jacobian: &'a [f64],
+    springs: &'a [f64],
+    rows: usize,
+    /// Whether they depend on each other: then nothing is known to follow from them.
+    are_dependent: bool,
+}
+
+impl<'a> Equations<'a> {
+    /// Of the rows that are an `equality`; the matrix of the factor has a Hessian with so many
+    /// entries.
+    pub(super) fn new(
+        factor: &'a mut dyn Factor,
+        (structure, jacobian): (&'a Triplets, &'a [f64]),
+        (springs, equality): (&'a [f64], &[bool]),
+        hessian: usize,
+    ) -> Self {
+        let off = |is_equality: &bool| if *is_equality { 0.0 } else { f64::MAX.sqrt() };
+        let d: Vec<f64> = equality.iter().map(off).collect();
+        let found = factor.factor(&vec![0.0; hessian], jacobian, springs, &d);
+        let are_dependent = found != Inertia::Correct;
+        Equations { factor, structure, jacobian, springs, rows: equality.len(), are_dependent }
     }
-    let is_implied = |row: &usize| {
-        let mut force = vec![0.0; springs.len() + equality.len()];
-        let entries = structure.entries().zip(jacobian).filter(|it| it.0.0 == *row);
+
+    /// Whether a row follows from them.
+    pub(super) fn imply(&mut self, row: usize) -> bool {
+        if self.are_dependent {
+            return false;
+        }
+        let mut force = vec![0.0; self.springs.len() + self.rows];
+        let entries = self.structure.entries().zip(self.jacobian).filter(|it| it.0.0 == row);
         entries.for_each(|((_, column), slope)| force[column] += slope);
-        let terms = force.iter().zip(springs).map(|(slope, spring)| slope * slope / spring);
+        let terms = force.iter().zip(self.springs).map(|(slope, spring)| slope * slope / spring);
         let alone: f64 = terms.sum();
         let mut moved = force.clone();
-        factor.solve(&mut moved);
+        self.factor.solve(&mut moved);
         let gives: f64 = force.iter().zip(&moved).map(|(slope, by)| slope * by).sum();
         gives <= IMPLIED * alone
-    };
-    rows.iter().map(is_implied).collect()
+    }
 }

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use fdcc::DataFiles;
 use fdcc_compiler::{Analysis, Files, Model, analyze_with, compile_chain};
 use fdcc_grammar::{Diagnostic, ParseCache, Severity};
+use fdcc_runtime::nlp::{Solution, Status};
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::{self, ChainOutcome, Outcome, Refusal};
 
@@ -129,6 +130,22 @@ pub fn refusal(text: &str) -> Option<Vec<Diagnostic>> {
 /// Solves from the model's own guess, however it ends.
 pub fn solve(problem: &Problem) -> Outcome {
     try_solve(problem).expect("the problem is not refused")
+}
+
+/// The solution of the discretised problem of a text, however it ends.
+pub fn solved(text: &str) -> Solution {
+    solve(&problem(text, &[], &[])).solution
+}
+
+/// Fails unless it is solved, with this objective to 1e-6 of it.
+pub fn assert_solved(what: &str, solution: &Solution, objective: f64) {
+    let difference = (solution.objective - objective).abs();
+    assert_eq!(solution.status, Status::Solved, "{what}: {solution:?}");
+    assert!(
+        difference <= 1e-6 * objective.abs(),
+        "{what}: {} instead of {objective}",
+        solution.objective
+    );
 }
 
 /// Solves a chain from its own guess, however it ends.

@@ -1,22 +1,7 @@
 //! A stationary point that is no minimum is left, wherever its direction of negative curvature is:
 //! along controls, states or unknowns, hidden by a barrier, or one that steps creep towards.
 
-use fdcc_runtime::nlp::{Solution, Status};
-use fdcc_tests::models::{problem, solve};
-
-fn solved(text: &str) -> Solution {
-    solve(&problem(text, &[], &[])).solution
-}
-
-fn assert_solved(what: &str, solution: &Solution, objective: f64) {
-    let difference = (solution.objective - objective).abs();
-    assert_eq!(solution.status, Status::Solved, "{what}: {solution:?}");
-    assert!(
-        difference <= 1e-6 * objective.abs(),
-        "{what}: {} instead of {objective}",
-        solution.objective
-    );
-}
+use fdcc_tests::models::{assert_solved, solved};
 
 /// What a quantity gains that is small for the others: a barrier that is worth more keeps it in the
 /// middle of its bounds, where it is a maximum. `J = -4e-12` and `-4e-10`, at both bounds of `p`.

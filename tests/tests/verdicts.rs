@@ -5,22 +5,8 @@
 //! the same discrete problem. Some 1,000 random ones more:
 //! `tests/peers/random_problems/`.
 
-use fdcc_runtime::nlp::{Solution, Status};
-use fdcc_tests::models::{problem, solve};
-
-fn solved(text: &str) -> Solution {
-    solve(&problem(text, &[], &[])).solution
-}
-
-fn assert_solved(what: &str, solution: &Solution, objective: f64) {
-    let difference = (solution.objective - objective).abs();
-    assert_eq!(solution.status, Status::Solved, "{what}: {solution:?}");
-    assert!(
-        difference <= 1e-6 * objective.abs(),
-        "{what}: {} instead of {objective}",
-        solution.objective
-    );
-}
+use fdcc_runtime::nlp::Status;
+use fdcc_tests::models::{assert_solved, problem, solve, solved};
 
 /// A control that follows 1, and a state that it takes to `x(1)`; with `x' = u` the best control is
 /// constant, `(u - 1) + (u - 2) = 0`.

@@ -223,3 +223,28 @@ fn wrong_lists_are_explained() {
         assert_eq!(stdout(&output), "", "{lists:?}");
     }
 }
+
+/// A tent: from the left of the ridge the way to `goal` crosses it once the goal is on the right.
+/// With `--json` each certified row says what follows what; the table has a letter for each
+/// sequence, and below it what they stand for.
+#[test]
+fn a_sweep_tells_where_the_sequence_changes() {
+    let text = "model tent\nparam goal = 0.5\ntime t in [0, 1]\nstate x start -1\n\
+                control u in [-9, 9]\nsurface ridge = x\ndynamics { x' in u - 0.1*Sgn(ridge) }\n\
+                end x == goal\nminimize integral(u^2)\n";
+    let folder = folder("sweep_sequences", &[("tent.fdc", text.as_bytes())]);
+    let sweep = ["sweep", "tent.fdc", "--log", "none"];
+    let rows = json(&fdcc(&folder, &[&sweep[..], &["goal=-0.5,0.5,1", "--json"]].concat(), ""));
+    let sequence = |row: usize| rows[row]["sequence"]["ridge"].clone();
+    assert_eq!(sequence(0), json!(["below"]));
+    assert_eq!(sequence(1), json!(["below", "above"]));
+    assert_eq!(sequence(2), sequence(1));
+    let table = stdout(&fdcc(&folder, &[&sweep[..], &["goal=-0.5,0.5,1"]].concat(), ""));
+    let lines: Vec<&str> = table.lines().collect();
+    let last = |line: &str| line.split_whitespace().last().unwrap_or_default().to_owned();
+    assert_eq!([1, 2, 3].map(|row| last(lines[row])), ["A", "B", "B"], "{table}");
+    assert_eq!(lines[4..], [" A  ridge below", " B  ridge below, above"]);
+    let alike = stdout(&fdcc(&folder, &[&sweep[..], &["goal=0.5,1"]].concat(), ""));
+    let end = " one sequence in all certified rows: ridge below, above\n";
+    assert!(alike.ends_with(end) && !alike.contains("sequence\n"), "{alike}");
+}

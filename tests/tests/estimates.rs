@@ -312,11 +312,20 @@ fn expectations_read_sums_of_phases() {
     assert!(found[0] > 0.0 && found[0] < found[1], "{found:?}");
 }
 
-/// A robust loss is no sum of squares, and a sum that is maximised neither.
+/// A robust loss is no sum of squares, also where it is written as one, and a sum that is maximised
+/// neither: to the square of `(x - y)^2` an error of `y` does not add.
 #[test]
 fn other_objectives_say_nothing_of_errors() {
     let data = decay();
-    for goal in ["minimize sum(k in obs, log(1 + ((x(k.t) - k.x)/0.01)^2))", "minimize p^2"] {
+    let losses = [
+        "log(1 + ((x(k.t) - k.x)/0.01)^2)",
+        "(x(k.t) - k.x)^4",
+        "tanh((x(k.t) - k.x)/0.01)^2",
+        "(sqrt(1 + (x(k.t) - k.x)^2) - 1)^2",
+        "max(abs(x(k.t) - k.x) - 0.001, 0)^2",
+    ];
+    let losses = losses.map(|it| format!("minimize sum(k in obs, {it})"));
+    for goal in losses.iter().map(String::as_str).chain(["minimize p^2"]) {
         let text = format!("{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\n{goal}");
         let data = data.clone();
         let files = DataFiles::from(move |_| Ok(data.clone()));
@@ -324,6 +333,25 @@ fn other_objectives_say_nothing_of_errors() {
             fdcc::check_with("a test", text.into(), Some(files)).model.expect("a right model");
         assert!(model.solve(&Options::default()).expect("it is solved").estimates().is_none());
     }
+}
+
+/// Squares in which an error of what was measured adds to the root are least squares in whatever
+/// words: the same standard error.
+#[test]
+fn least_squares_are_known_in_other_words() {
+    let fit = |term: &str| {
+        let text = format!(
+            "{DECAY}free p in [0.1, 9] guess 1\ndynamics {{ x' = -p*x }}\n\
+             minimize sum(k in obs, ({term})^2)"
+        );
+        error(&estimates(&text, &decay()), "p")
+    };
+    let plain = fit("x(k.t) - k.x");
+    for term in ["-(k.x - x(k.t))", "abs(x(k.t) - k.x)", "3*(x(k.t) + 1 - (k.x + 1))"] {
+        assert!(is_near(fit(term), plain), "{term}: {} and {plain}", fit(term));
+    }
+    // Relative errors are others.
+    assert!(fit("x(k.t)/k.x - 1").is_finite() && fit("log(x(k.t)) - log(k.x)").is_finite());
 }
 
 /// The measurements of `models/slider_fit.fdc` were made with mu = 0.3 and m = 2, and with the

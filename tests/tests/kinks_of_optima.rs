@@ -50,6 +50,16 @@ fn all() -> Vec<OnKink> {
             objective: 0.64,
             is_global: true,
         },
+        // A battery beside a sun that rises at 12: until 13 power costs 0.30, afterwards 0.08 is
+        // paid for what is left. Its one unit is used at first and comes back from the sun. The
+        // kink of time alone is none that an optimum lies on.
+        OnKink {
+            text: "time t in [0, 24]  state E in [0, 5] start 1  control b in [-2, 2]
+                let net = 1 - max(0, t - 12) + b  dynamics { E' = b }  end E >= 1
+                minimize integral(max(0.30*net, 0.08*net))",
+            objective: 0.30 * 12.5 - 0.08 * 60.5 - 0.30 + 0.08,
+            is_global: false,
+        },
         // Rest at the kink from x = u^2/10 on.
         OnKink {
             text: "time t in [0, 2]  state x start 1  control u in [-1, 1]  dynamics { x' = u }

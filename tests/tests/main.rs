@@ -40,6 +40,7 @@ mod higher_order;
 mod hostile;
 mod jumps;
 mod jumps_in_chains;
+mod junctions;
 mod kinks;
 mod kinks_in_phases;
 mod kinks_of_optima;

@@ -198,6 +198,7 @@ fn a_hold_says_what_is_zero_in_the_end() {
             is_graded: false,
             steep: Vec::new(),
             is_cut: false,
+            is_joined: false,
         };
         let phases = [phase([Mode::Above; 2]), phase(modes)];
         let chain = with_modes(model.meaning(), &phases).expect("it can be divided");

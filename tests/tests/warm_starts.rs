@@ -3,6 +3,7 @@
 
 use std::ops::ControlFlow;
 
+use fdcc::Model;
 use fdcc_runtime::nlp::{Options, Start, Status, Stop, interior_point};
 use fdcc_runtime::problem::{Chain, Linear, Problem, Solver};
 use fdcc_runtime::solve::warm_start::again;
@@ -102,4 +103,27 @@ fn a_removed_solver_says_what_to_write() {
     let mut model = fdcc_tests::models::meaning(&fdcc_tests::models::text_of("puck"));
     let refused = model.set_method("solver", "sqp").expect_err("it was removed");
     assert!(refused.contains("write `interior_point`"), "{refused}");
+}
+
+/// From a certified optimum the next one is found with its structure: nothing is smoothed, and no
+/// sequence is looked for. What comes out is the optimum that is found from the guess; where the
+/// structure changes (without friction nothing sticks), the guess is as good as before.
+#[test]
+fn an_optimum_is_followed_with_its_structure() {
+    let model = Model::from_file("../models/block.fdc").expect("it is there");
+    let solve = |mu: f64, start| {
+        let model = model.with("mu", mu).expect("it is a parameter");
+        let options = fdcc::Options { start, ..fdcc::Options::default() };
+        model.solve(&options).expect("it can be solved")
+    };
+    let first = solve(0.3, fdcc::Start::Guess);
+    for mu in [0.31, 0.2, 0.45] {
+        let alone = solve(mu, fdcc::Start::Guess);
+        let next = solve(mu, fdcc::Start::Solution(&first));
+        assert!(alone.is_certified() && next.is_certified(), "{mu}");
+        let [own, its] = [&next, &alone].map(fdcc::Solution::objective);
+        assert!((own - its).abs() < 1e-7 * its, "{mu}: {own}, from the guess {its}");
+        let counts = [&next, &alone].map(|it| it.outcome.solution.counts.iterations);
+        assert!(counts[0] < counts[1], "{mu}: {counts:?}");
+    }
 }

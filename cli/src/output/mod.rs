@@ -27,6 +27,7 @@ pub mod reach;
 pub mod rows;
 pub mod sarif;
 pub mod saved;
+pub mod sequence;
 pub mod simulation;
 pub mod simulation_of_phases;
 pub mod table;

@@ -63,6 +63,17 @@ fn joined(spans: &[Span], whole: f64) -> Vec<Span> {
     all
 }
 
+/// What follows what, without times: `held`, `below`; what only touches is `touches min`.
+pub fn order(spans: &[Span]) -> Vec<String> {
+    let ends = spans.first().zip(spans.last());
+    let whole = ends.map_or(0.0, |(first, last)| last.to - first.from);
+    let words = |span: &Span| match is_touch(span, whole) {
+        true => format!("touches {}", span.mode),
+        false => span.mode.clone(),
+    };
+    joined(spans, whole).iter().map(words).collect()
+}
+
 /// `held 0-0.31, below 0.31-1.92 min`; what only touches is `held at 0.31`.
 pub fn switching(spans: &[Span], units: &Units) -> String {
     let ends = spans.first().zip(spans.last());

@@ -3,6 +3,7 @@
 use super::document::{Document, Seconds};
 use super::named::Named;
 use super::optimality::Optimality;
+use super::sequence::{self, Sequence};
 use super::verification::Verification;
 use fdcc::language::parse_quantity;
 use fdcc::names::is_solved;
@@ -25,6 +26,9 @@ pub struct Scalars {
     /// that was asked.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub confirmed: Option<bool>,
+    /// What follows what, where it is certified.
+    #[serde(default = "Named::default", skip_serializing_if = "Named::is_empty")]
+    pub sequence: Sequence,
 }
 
 /// A value that was swept.
@@ -94,6 +98,7 @@ impl Row {
             constraint_violation: finite(document.constraint_violation),
             seconds: document.seconds,
             confirmed: confirmed.then(|| document.is_confirmed()),
+            sequence: sequence::of(document),
         };
         Row {
             scalars,

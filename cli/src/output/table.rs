@@ -2,6 +2,7 @@
 
 use super::number::aligned;
 use super::rows::{Row, Scalars};
+use super::sequence::Sequences;
 use super::units::Units;
 use comfy_table::{CellAlignment, Table, presets};
 
@@ -14,6 +15,8 @@ pub fn table<'d>(
     units: &Units,
     confirmed: bool,
 ) -> String {
+    let rows: Vec<_> = rows.collect();
+    let sequences = Sequences::new(rows.iter().map(|it| &it.1.scalars));
     let mut table = Table::new();
     table.load_style(presets::NOTHING);
     for (swept, row) in rows {
@@ -22,17 +25,21 @@ pub fn table<'d>(
         let results =
             ["iterations", "seconds", "status"].into_iter().chain(confirmed.then_some("confirmed"));
         let names = swept.iter().map(|(name, _)| (*name).to_owned());
+        let results = results.chain(sequences.differ().then_some("sequence"));
         table.set_header(names.chain(found).chain(results.map(str::to_string)));
         let confirmed = confirmed.then(|| answer(row).to_string());
-        table.add_row(cells(&swept, &row.scalars, units).into_iter().chain(confirmed));
+        let letter = sequences.differ().then(|| sequences.letter(&row.scalars));
+        let cells = cells(&swept, &row.scalars, units);
+        table.add_row(cells.into_iter().chain(confirmed).chain(letter));
     }
-    let last = table.column_count().saturating_sub(1 + usize::from(confirmed));
+    let words = 1 + usize::from(confirmed) + usize::from(sequences.differ());
+    let last = table.column_count().saturating_sub(words);
     table
         .column_iter_mut()
         .take(last)
         .for_each(|column| column.set_cell_alignment(CellAlignment::Right));
     let lines = table.lines().map(|line| line.trim_end().to_string() + "\n");
-    lines.collect()
+    lines.collect::<String>() + &sequences.lines()
 }
 
 /// Whether a row is confirmed, and why not.

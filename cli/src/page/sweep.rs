@@ -7,6 +7,7 @@ use crate::command::line;
 use crate::output::number::significant;
 use crate::output::plural;
 use crate::output::rows::{Scalars, Value};
+use crate::output::sequence::Sequences;
 use crate::output::units::Units;
 
 /// A sweep with more rows has no page: nobody reads it, and it would be megabytes.
@@ -211,13 +212,19 @@ impl Page<'_> {
         head.push(self.units.title("objective"));
         head.extend(names(&first.free.0));
         head.extend(["iterations", "status"].map(str::to_owned));
+        let sequences = Sequences::new(self.rows.iter().map(|it| &it.1));
+        head.extend(sequences.differ().then(|| "sequence".to_owned()));
         let head: Vec<&str> = head.iter().map(String::as_str).collect();
-        let rows: Vec<_> = self.rows.iter().take(MOST_LISTED).map(|it| self.row(it)).collect();
+        let row = |it: &(usize, Scalars)| {
+            let letter = sequences.differ().then(|| Cell::text(sequences.letter(&it.1)));
+            self.row(it).into_iter().chain(letter).collect()
+        };
+        let rows: Vec<_> = self.rows.iter().take(MOST_LISTED).map(row).collect();
         let title = match self.rows.len() > MOST_LISTED {
             true => format!("The first {MOST_LISTED} rows"),
             false => "All rows".into(),
         };
-        table(&title, &head, &rows)
+        table(&title, &head, &rows) + &listed_sequences(&sequences)
     }
 
     fn row(&self, (number, row): &(usize, Scalars)) -> Vec<Cell> {
@@ -255,6 +262,13 @@ impl Page<'_> {
         );
         section("The model", &body)
     }
+}
+
+/// What the letters of the table stand for.
+fn listed_sequences(sequences: &Sequences) -> String {
+    let rows: Vec<Vec<Cell>> =
+        sequences.all().map(|it| vec![Cell::text(it.0), Cell::text(it.1)]).collect();
+    table("What follows what in certified rows", &["sequence", ""], &rows)
 }
 
 fn legend() -> &'static str {

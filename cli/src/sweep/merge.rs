@@ -3,6 +3,7 @@
 use super::journal::lines;
 use crate::failure::Failure;
 use crate::output::rows::{Line, Scalars, Value};
+use crate::output::sequence;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{BufRead, BufReader, Seek, SeekFrom};
@@ -15,6 +16,8 @@ pub struct Merged {
     places: BTreeMap<usize, (usize, u64, String)>,
     /// How many rows the sweep has.
     rows: usize,
+    /// Whether a row tells what follows what.
+    has_sequences: bool,
 }
 
 fn wrong(what: String) -> Failure {
@@ -39,7 +42,7 @@ impl Merged {
         files.sort();
         files.dedup();
         refuse_several(&files)?;
-        let mut merged = Merged { files, places: BTreeMap::new(), rows: 0 };
+        let mut merged = Merged { files, places: BTreeMap::new(), rows: 0, has_sequences: false };
         for at in 0..merged.files.len() {
             merged.look_through(at)?;
         }
@@ -54,6 +57,7 @@ impl Merged {
         for line in lines(&path)? {
             let (begin, line) = line?;
             self.rows = self.rows.max(line.rows);
+            self.has_sequences |= !line.scalars.sequence.is_empty();
             let known = self.places.entry(line.row);
             let (other, _, key) = known.or_insert((at, begin, line.key.clone()));
             if *key != line.key {
@@ -89,9 +93,9 @@ impl Merged {
         let mut is_first = true;
         self.each(&mut |row, scalars| {
             if std::mem::take(&mut is_first) {
-                to(&joined(names(&scalars)));
+                to(&joined(names(&scalars, self.has_sequences)));
             }
-            to(&joined(cells(row, &scalars)));
+            to(&joined(cells(row, &scalars, self.has_sequences)));
         })
     }
 
@@ -143,15 +147,16 @@ fn refuse_several(files: &[PathBuf]) -> Result<(), Failure> {
     }
 }
 
-fn names(row: &Scalars) -> Vec<String> {
+fn names(row: &Scalars, has_sequences: bool) -> Vec<String> {
     let swept = row.swept.0.iter().map(|(name, _)| name.as_str());
     let free = row.free.0.iter().map(|(name, _)| name.as_str());
     let all = ["row"].into_iter().chain(swept).chain(["status", "objective"]).chain(free);
     let all = all.chain(["iterations", "kkt_error", "constraint_violation"]);
-    all.chain(row.confirmed.map(|_| "confirmed")).map(str::to_owned).collect()
+    let all = all.chain(row.confirmed.map(|_| "confirmed"));
+    all.chain(has_sequences.then_some("sequence")).map(str::to_owned).collect()
 }
 
-fn cells(at: usize, row: &Scalars) -> Vec<String> {
+fn cells(at: usize, row: &Scalars, has_sequences: bool) -> Vec<String> {
     let number = |it: Option<f64>| it.map(|it| format!("{it:?}")).unwrap_or_default();
     let value = |it: &Value| match it {
         Value::Whole(it) => it.to_string(),
@@ -165,6 +170,7 @@ fn cells(at: usize, row: &Scalars) -> Vec<String> {
     cells.push(row.iterations.to_string());
     cells.extend([number(row.kkt_error), number(row.constraint_violation)]);
     cells.extend(row.confirmed.map(|it| it.to_string()));
+    cells.extend(has_sequences.then(|| sequence::words(&row.sequence)));
     cells
 }
 

@@ -290,7 +290,8 @@ impl Without {
         let mut is_any = false;
         for rows in [&mut self.own.path, &mut self.own.boundary] {
             let mut others = Vec::new();
-            for row in rows.iter_mut() {
+            // Those of what stands for a kink say which of both is 0 there: they stay whole.
+            for row in rows.iter_mut().filter(|it| !is_kink(&it.place.name)) {
                 if let Some(value) = sides::length(graph, row, &number) {
                     (row.value, is_any) = (value, true);
                     continue;

@@ -41,6 +41,10 @@ pub(crate) fn squares(model: &Model) -> (Graph, Vec<Square>) {
         let Some(terms) = taken_apart(model, &mut graph, value) else {
             return (graph, Vec::new());
         };
+        let of_time = graph.inputs_of(&[model.sums[sum].time]);
+        if terms.iter().any(|(_, root)| !adds_error(model, &graph, &of_time, *root)) {
+            return (graph, Vec::new());
+        }
         for (weight, root) in terms {
             let name = name(model, &graph, sum, root);
             let reading = reading(model, &mut graph, root);
@@ -103,6 +107,40 @@ fn taken_apart(model: &Model, graph: &mut Graph, value: ExprId) -> Option<Vec<(E
         open.push((graph.mul(weight, factor), rest));
     }
     Some(squares)
+}
+
+/// Whether an error of what was measured adds to a root, as to `(signal - measured)/deviation`. The
+/// square of a root such as `(signal - measured)^2` or `tanh(signal - measured)` is another loss
+/// than least squares, and says nothing of standard errors in this way.
+fn adds_error(model: &Model, graph: &Graph, of_time: &[u32], root: ExprId) -> bool {
+    let is_weight = |id| is_weight(model, graph, id);
+    let is_measured = |id| graph.inputs_of(&[id]).iter().any(|it| is_column(model, of_time, *it));
+    let adds = |id| adds_error(model, graph, of_time, id);
+    if is_weight(root) || !is_measured(root) {
+        return true;
+    }
+    for sum in [Builtin::Add, Builtin::Sub] {
+        if let Some(&[a, b]) = graph.as_call(root, sum) {
+            let is_reading = |id| is_weight(id) && is_measured(id);
+            return is_reading(a) || is_reading(b) || adds(a) && adds(b);
+        }
+    }
+    for same in [Builtin::Neg, Builtin::Abs] {
+        if let Some(&[a]) = graph.as_call(root, same) {
+            return adds(a);
+        }
+    }
+    match (graph.as_call(root, Builtin::Mul), graph.as_call(root, Builtin::Div)) {
+        (Some(&[a, b]), _) => is_weight(a) && adds(b) || is_weight(b) && adds(a),
+        (_, Some(&[a, b])) => is_weight(b) && adds(a),
+        _ => false,
+    }
+}
+
+/// Whether an input is a column, but for those that say when.
+fn is_column(model: &Model, of_time: &[u32], input: u32) -> bool {
+    let is_column = matches!(model.symbols[input as usize], Symbol::Column(..));
+    is_column && !of_time.contains(&input)
 }
 
 /// The measurement in a root such as `(signal - measured)/deviation`.

@@ -22,6 +22,7 @@ mod modes;
 mod path;
 mod sequences;
 mod shares;
+mod turns;
 
 pub use at_times::{ends_at, with_times};
 pub use course::{Course, Ends};
@@ -98,6 +99,8 @@ struct Jumps {
     begins: Vec<Beginning>,
     /// How often each jump may happen.
     limits: Vec<Option<usize>>,
+    /// Whether the state turns back at each, where that is known.
+    turns: Vec<Option<bool>>,
 }
 
 impl Jumps {
@@ -106,8 +109,9 @@ impl Jumps {
         let begins = crossings::beginnings(model, &numbers);
         let mut limits = sequences::limits(model, &numbers);
         limits.resize(2 * model.jumps.len(), None);
+        let turns = model.jumps.iter().map(|jump| turns::turns(model, &numbers, jump)).collect();
         let jumps = [model.jumps.clone(), crossings(model)].concat();
-        Ok(Jumps { whole: Model { jumps, ..model.clone() }, begins, limits })
+        Ok(Jumps { whole: Model { jumps, ..model.clone() }, begins, limits, turns })
     }
 }
 

@@ -72,7 +72,11 @@ impl MultiPhase<'_> {
         let mut rows = Vec::new();
         let own = &whole.jumps[..self.jumps.begins.len()];
         for (index, jump) in own.iter().enumerate() {
-            if !self.may_happen(j, index) || has_both(own, jump) {
+            if !self.may_happen(j, index) {
+                continue;
+            }
+            if has_both(own, jump) {
+                rows.extend(self.side_of_both(j, index));
                 continue;
             }
             let range = match (self.is_not_yet_before(j, index), jump.direction) {
@@ -93,6 +97,37 @@ impl MultiPhase<'_> {
         }
         rows.retain(|row| !self.is_written(row));
         rows
+    }
+
+    /// That a jump does not happen whose surface has jumps in both directions, where the one before
+    /// or the one behind tells on which side the state is.
+    fn side_of_both(&mut self, j: usize, index: usize) -> Option<Constraint> {
+        let jump = &self.whole().jumps[index];
+        let range = match (jump.direction, self.is_above(j, index)?) {
+            (Direction::Falling, true) => self.division.not_below(),
+            (Direction::Rising, false) => self.division.not_above(),
+            _ => return None,
+        };
+        let value = self.whole().surfaces[jump.surface].psi;
+        Some(Constraint { place: jump.place.clone(), value, range })
+    }
+
+    /// Whether the function of the surface of a jump is above 0 in a phase: until a falling one,
+    /// and behind one at which the state turns back.
+    fn is_above(&self, j: usize, index: usize) -> Option<bool> {
+        if self.is_moved(j, index) {
+            return None;
+        }
+        let surface = self.whole().jumps[index].surface;
+        let is_there = |at: &&usize| self.whole().jumps[**at].surface == surface;
+        let falls = |at: usize| self.whole().jumps[at].direction == Direction::Falling;
+        let (before, behind) = self.sequence.split_at(self.count_before(j));
+        if let Some(next) = behind.iter().find(is_there) {
+            return Some(falls(*next));
+        }
+        let last = *before.iter().rev().find(is_there)?;
+        let turns = self.jumps.turns.get(last).copied().flatten()?;
+        Some(falls(last) == turns)
     }
 
     /// Whether a path constraint of the model, or the bounds of a state, say the same.

@@ -1,6 +1,7 @@
 //! What is checked of a located answer before it is called an optimum of the true system.
 
 use super::Solution;
+use super::other_modes::other_modes;
 use super::timing::gap_of_a_moment;
 use super::true_optimum::certificate_limits::{
     CONTACT, GAIN, HAMILTONIAN, MEASURED, MODES, REPLAYED, SEEN, STATIONARY, TIMING, WORTH,
@@ -10,10 +11,9 @@ use super::true_optimum::{
     Certificate, Check, Contacts, Located, Range, Stretch, beyond_bounds, is_attracted,
     jumps_in_the_end, ranges, variations, wrong_sign,
 };
-use crate::verification::{Stay, Verification, modes};
-use fdcc_compiler::{Arc, Model, PhaseOfModes, Switch as Switched, is_kink, limits};
+use crate::verification::Verification;
+use fdcc_compiler::{Arc, Model, PhaseOfModes, limits};
 use fdcc_runtime::problem::{Problem, Variable};
-use fdcc_runtime::solution::modes::Span;
 use fdcc_runtime::solve::Outcome;
 
 /// Of a located answer with its replay; `model` is what holds between jumps, `between` the smoothed
@@ -166,43 +166,6 @@ fn arc_name(arc: Arc) -> &'static str {
         Arc::Free => "free",
         Arc::Upper => "max",
     }
-}
-
-/// The part of the time on which the replay is in another mode than the plan, of the surface where
-/// that is most. Where the plan is on the surface itself, its selector may be 1 or -1 in either
-/// mode.
-fn other_modes(model: &Model, solution: &Solution, replay: &Verification) -> f64 {
-    let time = solution.time();
-    let duration = time[time.len() - 1] - time[0];
-    let written = &solution.model().meaning().surfaces;
-    let of = |(at, switch): (usize, &Switched)| {
-        // The components of a `Dir` are held together.
-        let name = &model.surfaces[switch.surfaces.start].place.name;
-        let stays = written.iter().position(|it| it.place.name == *name);
-        let Some(stays) = stays.and_then(|at| replay.stays.get(at)) else { return f64::INFINITY };
-        let spans = &solution.outcome.modes[at];
-        let psi = &solution.outcome.trajectory.switching[at];
-        let largest = psi.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
-        let is_off = |k: usize| psi[k..].iter().take(2).any(|it| it.abs() > REPLAYED * largest);
-        let is_other = |k: usize| {
-            let middle = 0.5 * (time[k] + time[k + 1]);
-            let span = spans.iter().find(|it| middle <= it.to);
-            let stay = stays.iter().find(|it| middle <= it.to);
-            !span.zip(stay).is_some_and(|(span, stay)| is_same(switch, span, stay))
-        };
-        let others = (0..time.len() - 1).filter(|k| is_off(*k) && is_other(*k));
-        others.map(|k| time[k + 1] - time[k]).sum::<f64>() / duration
-    };
-    // On a kink, both modes are the same.
-    let all = model.switches().into_iter().enumerate();
-    let meant = all.filter(|it| !is_kink(&it.1.place.name));
-    meant.map(|(at, switch)| of((at, &switch))).fold(0.0, f64::max)
-}
-
-fn is_same(switch: &Switched, span: &Span, stay: &Stay) -> bool {
-    let held = "held";
-    let [own, its] = [crate::names::mode_name(span.mode), modes::name(stay.mode)];
-    if switch.is_ball { (own == held) == (its == held) } else { own == its }
 }
 
 /// By how much of its size the Hamiltonian changes inside of phases, over the whole time.

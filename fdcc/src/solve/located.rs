@@ -9,14 +9,15 @@ use super::report::Options;
 use super::sequences::happened;
 use super::simulated_start::of_guess;
 use super::true_optimum::{
-    Certificate, Contacts, First, Located, Spent, Whole, locate, on_half_intervals, polished,
-    replayed,
+    Certificate, Contacts, First, Located, Spent, Whole, locate, locate_again, on_half_intervals,
+    polished, replayed,
 };
 use crate::model::Model;
 use fdcc_compiler::{between_jumps, limits};
-use fdcc_runtime::nlp::Status;
+use fdcc_runtime::nlp::{Counts, Status};
 use fdcc_runtime::problem::{Grid, Method, Problem};
 use fdcc_runtime::solution::phases;
+use std::sync::Arc;
 
 /// An answer that is not certified is replayed so often, to look near what the true system does.
 const MOST_REPLAYS: usize = 3;
@@ -50,6 +51,31 @@ pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Soluti
         Ok(answer) => answer,
         Err(certificate) => Solution::new(model.clone(), found).missed(certificate, options),
     }
+}
+
+/// The certified optimum with the structure of that of an earlier solution, if there is one.
+/// `problem` is the smoothed one.
+pub(super) fn continued(
+    model: &Model,
+    earlier: &Solution,
+    problem: &Problem,
+    options: &Options,
+) -> Option<Solution> {
+    let (between, jumps) = (between_jumps(model.meaning()), model.meaning().jumps.len());
+    let located = earlier.located.as_ref().filter(|it| it.fits(&between, jumps))?;
+    // That an optimum is global was proved of other values.
+    let is_divided = !model.meaning().at_times.is_empty() || !model.meaning().phases.is_empty();
+    if is_divided || earlier.outcome.solution.global || options.starts > 1 {
+        return None;
+    }
+    let mut found = Found::new(problem.clone(), located.whole(problem).outcome);
+    found.outcome.solution.counts = Counts::default();
+    if !asks_for_truth(model, &between, &found) {
+        return None;
+    }
+    let (between, found, spent) = (&between, &found, Spent::default());
+    let first = First::Controls;
+    Search { model, between, found, options, first, spent }.again(located)
 }
 
 /// The certified answer, or the better one of two.
@@ -120,6 +146,16 @@ impl Search<'_> {
         let outcome = found.outcome.clone();
         let whole = Whole::of_smoothed(self.between, &found.problem, outcome, Vec::new());
         let located = self.replayed(&Solution::new(self.model.clone(), found.clone()), &whole)?;
+        let (answer, located) = self.refined(located);
+        let is_certified = answer.is_certified();
+        is_certified.then(|| self.ended(answer, &located))
+    }
+
+    /// What is certified with the structure of another optimum.
+    fn again(&mut self, earlier: &Located) -> Option<Solution> {
+        let models = [self.model.meaning(), self.between];
+        let (problem, stop) = (&self.found.problem, self.options.stop);
+        let located = locate_again(models, problem, earlier, stop, &mut self.spent)?;
         let (answer, located) = self.refined(located);
         let is_certified = answer.is_certified();
         is_certified.then(|| self.ended(answer, &located))
@@ -270,6 +306,7 @@ fn of(model: &Model, between: &fdcc_compiler::Model, found: &Found, located: Loc
     let certificate = certificate(&located, between, smoothed, &solution, replay.as_ref());
     solution.certificate = Some(certificate);
     solution.of_holds = located.sensitivities_of_holds(between, smoothed);
+    solution.located = solution.is_certified().then(|| Arc::new(located.clone()));
     let located = located.with_gradients(between, smoothed);
     let costates = located.whole(smoothed).outcome.trajectory.costates;
     solution.outcome.trajectory.costates = costates;

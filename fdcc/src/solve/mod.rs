@@ -2,6 +2,7 @@
 //! [`sequences`] all sequences of jumps.
 
 mod at_times;
+mod beginning;
 mod bounds;
 mod cases;
 mod certify;
@@ -18,6 +19,7 @@ mod located_in_phases;
 mod magnitudes;
 mod multistart;
 pub mod optimality;
+mod other_modes;
 mod parametric;
 mod phases;
 mod reach;
@@ -178,6 +180,11 @@ impl Compiled {
     fn solve_once(&self, options: &Options) -> Result<Solution, Error> {
         self.check_start(options.start)?;
         let meaning = self.model.meaning();
+        if let Start::Solution(earlier) = options.start
+            && let Some(next) = located::continued(&self.model, earlier, &self.problem, options)
+        {
+            return Ok(next);
+        }
         if !meaning.at_times.is_empty() || !meaning.jumps.is_empty() {
             let found = match options.start {
                 Start::Guess => self.solve_divided(None, options)?,

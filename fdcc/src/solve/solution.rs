@@ -4,24 +4,21 @@ use super::families::Family;
 use super::found::{Found, Jump, Phases, Sequence};
 use super::phases::Whole;
 use super::report::{Ended, Options};
-use super::true_optimum::Certificate;
+use super::true_optimum::{Certificate, Located};
 use super::tuning::search::INFEASIBLE;
 use crate::error::Error;
 use crate::model::Model;
 use crate::names::status_name;
 use crate::record::{JumpRecord, NodesRecord, Record, Settings};
 use crate::verification::{Verification, verify};
-use crate::warm_start::from_record;
-use fdcc_compiler::{
-    compile_by_parameters, compile_chain_by_parameters, is_kink, parameters_on_kinks,
-};
+use fdcc_compiler::{compile_by_parameters, compile_chain_by_parameters, parameters_on_kinks};
 use fdcc_grammar::Diagnostic;
-use fdcc_runtime::nlp::{self, Status};
+use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
-use fdcc_runtime::solve::warm_start::{again, one_interval_later};
 use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// A solution, or the best iterate where there is none; numbers are in SI.
 ///
@@ -78,6 +75,8 @@ pub struct Solution {
     pub(super) parts: Vec<Solution>,
     /// What the solver saw of a model with phases.
     pub(super) whole: Option<Whole>,
+    /// The certified optimum with its structure, for the next one.
+    pub(super) located: Option<Arc<Located>>,
 }
 
 impl Solution {
@@ -98,6 +97,7 @@ impl Solution {
             linked: Vec::new(),
             parts: Vec::new(),
             whole: None,
+            located: None,
         }
     }
 
@@ -272,50 +272,6 @@ impl Solution {
             jumps: self.jumps.iter().map(jump).collect(),
             phases: self.parts.iter().map(|part| self.record_of(part)).collect(),
         }
-    }
-
-    /// Where another solve begins that starts at this one: with all multipliers if the grid is the
-    /// same.
-    pub(super) fn as_start(&self, chain: &Chain) -> nlp::Start {
-        match self.has_grid_of(chain) {
-            true => again(chain, &self.outcome.solution, self.chosen_widths()),
-            false => {
-                let mut controls = chain.phases.iter().flat_map(|it| &it.controls);
-                let has_kinks = controls.any(|it| is_kink(&it.name));
-                let record = self.record();
-                // Nodes of controls have to be those of all controls.
-                let nodes = record.nodes.clone().filter(|_| !has_kinks);
-                from_record(&Record { nodes, ..record }, chain)
-            }
-        }
-    }
-
-    /// The same for a solve one interval later.
-    pub(super) fn as_later_start(&self, chain: &Chain) -> nlp::Start {
-        let is_uniform = chain.phases.len() == 1 && chain.method().grid.times().is_empty();
-        match self.has_grid_of(chain) && is_uniform {
-            true => one_interval_later(chain, &self.outcome.solution, self.chosen_widths()),
-            false => self.as_start(chain),
-        }
-    }
-
-    fn has_grid_of(&self, chain: &Chain) -> bool {
-        let shape = |problem: &Problem| {
-            let method = &problem.method;
-            let sizes = [problem.controls.len(), problem.unknowns.len(), problem.path_bounds.len()];
-            let grid = method.grid.times().to_vec();
-            (method.intervals(), method.scheme, method.controls, grid, sizes)
-        };
-        let own: Vec<&Problem> = match (&self.whole, &self.between_jumps) {
-            (Some(whole), _) => whole.chain.phases.iter().collect(),
-            (None, Some(between)) => between.chain.phases.iter().collect(),
-            (None, None) => vec![&self.problem],
-        };
-        own.into_iter().map(shape).eq(chain.phases.iter().map(shape))
-    }
-
-    fn chosen_widths(&self) -> &[f64] {
-        if self.has_chosen_widths() { &self.outcome.sigma } else { &[] }
     }
 
     fn settings(&self) -> Settings<'_> {

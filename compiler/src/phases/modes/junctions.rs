@@ -80,12 +80,12 @@ impl Modes<'_> {
     fn is_continuous(&mut self, j: usize, control: usize) -> bool {
         let [before, after] = [&self.phases[j], &self.phases[j + 1]];
         let is_untouched = after.touches.iter().all(|it| *it == Arc::Free);
+        let is_same = before.contacts == after.contacts;
         before.modes == after.modes
-            && before.contacts == after.contacts
+            && (is_same && self.is_regular(j, control) || !is_same && after.is_joined)
             && is_untouched
             && !after.is_cut
             && after.jump.is_none()
-            && self.is_regular(j, control)
     }
 
     fn is_regular(&mut self, j: usize, control: usize) -> bool {

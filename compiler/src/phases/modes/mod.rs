@@ -92,6 +92,9 @@ pub struct PhaseOfModes {
     pub steep: Vec<u16>,
     /// Whether controls jump where it begins, though nothing else changes.
     pub is_cut: bool,
+    /// Whether controls that reach their bounds where it begins are at these on both sides, though
+    /// an arc of a limit begins or ends there.
+    pub is_joined: bool,
 }
 
 impl PhaseOfModes {
@@ -122,6 +125,16 @@ impl PhaseOfModes {
     /// Whether something determines the controls at each node.
     pub fn needs_polynomials(&self) -> bool {
         self.modes.contains(&Mode::Held) || self.contacts.iter().any(|it| *it != Arc::Free)
+    }
+
+    /// Whether as many limits are reached as controls are free: an arc of one of these would be
+    /// another condition.
+    pub fn are_controls_given(&self) -> bool {
+        let count = |arcs: &[Arc], is_free: bool| {
+            arcs.iter().filter(|it| (**it == Arc::Free) == is_free).count()
+        };
+        let reached = count(&self.contacts, false);
+        reached > 0 && reached >= count(&self.arcs, true)
     }
 
     /// Controls and limits are between their bounds.

@@ -142,6 +142,13 @@ impl<'l> Contacts<'l> {
         begins && run.first < NEAR || ends && run.behind + NEAR > count
     }
 
+    /// Whether a limit is active at one end of a phase: 0 or 1.
+    pub(super) fn is_active_at(&self, j: usize, limit: usize, arc: Arc, end: usize) -> bool {
+        let count = self.located.outcome.phases[j].trajectory.time.len() - 1;
+        let mut runs = self.runs_of_limit(j, limit).into_iter().filter(|it| it.arc == arc);
+        runs.any(|run| if end == 0 { run.first < NEAR } else { run.behind + NEAR > count })
+    }
+
     /// The end of a phase at which a run is, where a surface changes its mode and nothing jumps: 0
     /// or 1.
     fn end_near(&self, j: usize, run: &Run) -> Option<usize> {
@@ -292,10 +299,9 @@ impl<'l> Contacts<'l> {
     /// That of the Hamiltonian of a phase; of measured data, which say nothing of phases without
     /// rows behind them, of all.
     pub(super) fn size(&self, j: usize) -> f64 {
-        let of = |j: usize| self.located.outcome.phases[j].trajectory.hamiltonian.scale;
         let size = match self.model.sums.is_empty() {
-            true => of(j),
-            false => (0..self.located.outcome.phases.len()).map(of).fold(0.0, f64::max),
+            true => self.located.size_of_phase(j),
+            false => self.located.largest_size(),
         };
         size.max(self.located.least_size(self.model))
     }

@@ -52,10 +52,33 @@ pub(super) struct Planned<'p> {
     from: &'p Whole,
 }
 
+/// What decides how a solve ends.
+#[derive(PartialEq)]
+pub(super) struct Attempt {
+    phases: Vec<PhaseOfModes>,
+    times: Vec<f64>,
+    /// Of which phase of a model with phases.
+    of: Option<usize>,
+    /// The objective where it begins.
+    from: f64,
+}
+
 impl<'s> Search<'s> {
-    /// A stationary answer; nothing where none is found, or all work is spent.
+    /// A stationary answer; nothing where none is found, none was found before, or all work is
+    /// spent.
     pub(super) fn solve(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
-        self.ended(structure, from).filter(|it| is_stationary(&it.outcome.solution))
+        let Structure { phases, times } = structure.clone();
+        let (of, begin) = (self.among.map(|it| it.own), from.outcome.solution.objective);
+        let attempt = Attempt { phases, times, of, from: begin };
+        if self.spent.lost.contains(&attempt) {
+            return None;
+        }
+        let found = self.ended(structure, from);
+        let found = found.filter(|it| is_stationary(&it.outcome.solution));
+        if found.is_none() {
+            self.spent.lost.push(attempt);
+        }
+        found
     }
 
     /// Where the solve ended.

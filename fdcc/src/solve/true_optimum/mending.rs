@@ -1,6 +1,7 @@
 //! What a located answer asks for: a structure that nothing of it contradicts.
 
 use super::contacts::Contacts;
+use super::joined::joined;
 use super::range::ranges;
 use super::structure::{NewArcs, Structure};
 use super::tuning::search::{WORSE, WORSE_IF_FINER};
@@ -65,7 +66,8 @@ impl Search<'_> {
         let is_first = self.first == First::Contacts && released.is_some();
         let first = is_first.then(|| [arcs(NewArcs::All).without_overlaps(), touched.clone()]);
         let repaired = repair::without_contradiction(self.model, located);
-        let repaired = repaired.into_iter().chain(first.into_iter().flatten()).chain(released);
+        let repaired = repaired.into_iter().chain([joined(&contacts)]);
+        let repaired = repaired.chain(first.into_iter().flatten()).chain(released);
         let new = [arcs(NewArcs::All), arcs(NewArcs::Longest)].into_iter();
         let new = new.chain([touched]);
         let all = repaired

@@ -17,9 +17,11 @@ mod answer;
 mod between_nodes;
 mod certificate;
 mod contacts;
+mod corners;
 mod costates;
 mod hold_sensitivities;
 mod insertion;
+mod joined;
 mod joint;
 mod jump_edges;
 mod kink_pushes;
@@ -64,12 +66,13 @@ use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solve::ChainOutcome;
 use insertion::Candidate;
-use joint::{Among, is_nearly_stationary, is_stationary};
+use joint::{Among, Attempt, is_nearly_stationary, is_stationary};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use structure::Structure;
 use tuning::certificate::{MEASURED, WORTH};
 use tuning::search::{GAIN, GAIN_OF_TRIAL, MOST_ALTERNATIVES, WORSE};
+use tuning::structure::PART_AT_REST;
 
 /// A structure with its optimum.
 #[derive(Clone)]
@@ -124,6 +127,8 @@ pub(crate) struct Spent {
     solves: usize,
     /// Iterations of all solves, each times its intervals.
     work: usize,
+    /// Those that found nothing.
+    lost: Vec<Attempt>,
 }
 
 /// Looks for the optimum of the true system near a smoothed solution; nothing where none is found.
@@ -138,12 +143,24 @@ pub(crate) fn locate(
     let mut search = Search { written, model, problem, among: None, first, stop, spent };
     let structure = Structure::of(problem, smoothed, limits(model).len());
     let first = search.repaired(structure, smoothed)?;
-    let mut held = search.with_holds(first);
-    let passed = std::mem::take(&mut held.others);
-    let refined = search.refined(held);
-    let mut located = search.followed(refined);
-    located.others.extend(search.alternatives(passed));
-    Some(located)
+    Some(search.completed(first))
+}
+
+/// Looks for the optimum of the true system with the structure of an `earlier` one, which may have
+/// been found for other values of parameters; nothing where none is found with it.
+/// The other arguments are those of [`locate`].
+pub(crate) fn locate_again(
+    [written, model]: [&Model; 2],
+    problem: &Problem,
+    earlier: &Located,
+    stop: &(dyn Fn() -> ControlFlow<Stop> + Sync),
+    spent: &mut Spent,
+) -> Option<Located> {
+    let first = First::Controls;
+    let mut search = Search { written, model, problem, among: None, first, stop, spent };
+    let solved = search.solve(earlier.structure.clone(), &earlier.whole(problem))?;
+    let mended = search.mended(solved)?;
+    Some(search.completed(mended))
 }
 
 /// The same structure on shorter intervals, in a few places or of half the length; nothing where
@@ -183,6 +200,16 @@ impl Search<'_> {
     fn repaired(&mut self, structure: Structure, from: &Whole) -> Option<Located> {
         let located = self.first_solved(structure, from)?;
         self.mended(located)
+    }
+
+    /// With the holds that it is worth having, as accurate as it can be.
+    fn completed(&mut self, located: Located) -> Located {
+        let mut held = self.with_holds(located);
+        let passed = std::mem::take(&mut held.others);
+        let refined = self.refined(held);
+        let mut located = self.followed(refined);
+        located.others.extend(self.alternatives(passed));
+        located
     }
 
     /// What was passed by on the way, ready to be certified. Where surfaces may be held these are
@@ -258,6 +285,16 @@ impl Search<'_> {
 }
 
 impl Located {
+    /// Whether its structure is one of a model.
+    pub fn fits(&self, model: &Model, jumps: usize) -> bool {
+        let own = &self.structure.phases[0];
+        let phases = self.structure.phases.iter();
+        own.modes.len() == model.switches().len()
+            && own.arcs.len() == model.controls.len()
+            && own.contacts.len() == limits(model).len()
+            && phases.filter_map(|it| it.jump).all(|jump| jump < jumps)
+    }
+
     /// Whether another optimum was found, and a worse one.
     fn is_worse(&self, other: &Located) -> bool {
         self.rises(other, WORSE)
@@ -274,6 +311,19 @@ impl Located {
         let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
         let durations = self.structure.times.windows(2).map(|pair| pair[1] - pair[0]);
         sizes.zip(durations).map(|(size, duration)| size * duration.max(0.0)).sum()
+    }
+
+    /// That of the Hamiltonian of a phase; where nothing is at stake any more, all of its terms are
+    /// rounding, and a part of its size elsewhere counts.
+    fn size_of_phase(&self, j: usize) -> f64 {
+        let own = self.outcome.phases[j].trajectory.hamiltonian.scale;
+        own.max(PART_AT_REST * self.largest_size())
+    }
+
+    /// That of the Hamiltonian where it is largest.
+    fn largest_size(&self) -> f64 {
+        let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
+        sizes.fold(0.0, f64::max)
     }
 
     /// Less is no size of a Hamiltonian: of measured data that is what makes a difference to them.

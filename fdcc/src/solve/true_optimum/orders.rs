@@ -89,6 +89,7 @@ mod tests {
             is_graded: false,
             steep: Vec::new(),
             is_cut: false,
+            is_joined: false,
         }
     }
 

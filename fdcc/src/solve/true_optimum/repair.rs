@@ -28,7 +28,10 @@ pub(super) fn without_contradiction(model: &Model, located: &Located) -> Option<
         return structure.may_leave_out(repelled).then(|| structure.without(repelled));
     }
     if let Some(wrong) = Contacts::new(model, located).wrong_sign().filter(|it| it.part > CONTACT) {
-        return Some(structure.without_contact(wrong.phase, wrong.limit));
+        return Some(match wrong.is_at_corner {
+            true => structure.without_corner(wrong.phase, wrong.limit),
+            false => structure.without_contact(wrong.phase, wrong.limit),
+        });
     }
     None
 }
@@ -88,7 +91,7 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongAr
     for (j, phase) in located.structure.phases.iter().enumerate() {
         let (problem, outcome) = (&located.chain.phases[j], &located.outcome.phases[j]);
         let slopes = control_slopes(problem, outcome);
-        let size = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
+        let size = located.size_of_phase(j).max(f64::MIN_POSITIVE);
         for (control, arc) in phase.arcs.iter().enumerate() {
             let ControlSlopes { least, largest, terms } = slopes[control];
             let wrong = match arc {

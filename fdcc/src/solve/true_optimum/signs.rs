@@ -34,6 +34,8 @@ pub(crate) struct Wrong {
     pub limit: usize,
     /// By how much, for its largest value.
     pub part: f64,
+    /// Whether it is the multiplier where the phase begins, between two arcs.
+    pub is_at_corner: bool,
 }
 
 impl Contacts<'_> {
@@ -48,9 +50,11 @@ impl Contacts<'_> {
                     .then(|| self.wrong_of_touch(j, limit, phase.touches[limit]));
                 let ends = self.wrong_at_ends(j, limit, phase.contacts[limit]);
                 let parts = arc.into_iter().chain(touch).chain(ends);
-                all.extend(parts.map(|part| Wrong { phase: j, limit, part }));
+                let wrong = |part| Wrong { phase: j, limit, part, is_at_corner: false };
+                all.extend(parts.map(wrong));
             }
         }
+        all.extend(self.wrong_at_corners());
         all.into_iter().max_by(|a, b| a.part.total_cmp(&b.part))
     }
 
@@ -106,7 +110,7 @@ impl Contacts<'_> {
     }
 
     /// The multiplier of `c = 0` at the first time of a phase; nothing where it is no condition.
-    fn kappa_of_entry(&self, j: usize, limit: usize) -> Option<f64> {
+    pub(super) fn kappa_of_entry(&self, j: usize, limit: usize) -> Option<f64> {
         let (located, name) = (self.located, self.name(j, limit));
         if j > 0 {
             return located.link_multiplier(j, &format!("{name} reached"));
@@ -136,7 +140,7 @@ impl Contacts<'_> {
     }
 
     /// A multiplier that acts at one time, by what it is worth over the range of its limit.
-    fn part_at_once(&self, j: usize, limit: usize, multiplier: f64) -> f64 {
+    pub(super) fn part_at_once(&self, j: usize, limit: usize, multiplier: f64) -> f64 {
         let duration = self.located.structure.ends()[1] - self.located.structure.ends()[0];
         multiplier * self.ranges[limit] / (self.size(j) * duration)
     }
@@ -145,8 +149,8 @@ impl Contacts<'_> {
 /// The `F` of an arc at its two ends, from what it is on the first and on the last intervals; and
 /// how uncertain that is.
 pub(super) struct At {
-    begin: [f64; 2],
-    end: [f64; 2],
+    pub begin: [f64; 2],
+    pub end: [f64; 2],
 }
 
 impl At {

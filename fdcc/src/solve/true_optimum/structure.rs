@@ -75,18 +75,20 @@ impl Structure {
                 is_graded: false,
                 steep: Vec::new(),
                 is_cut: false,
+                is_joined: false,
             }
         };
         let phases = times.windows(2).map(phase).collect();
         Structure { phases, times }.merged()
     }
 
-    /// How many limits are reached and surfaces held.
+    /// How many limits are reached, surfaces held and controls joined.
     pub fn conditions(&self) -> usize {
         let of = |phase: &PhaseOfModes| {
             let limits = phase.contacts.iter().chain(&phase.touches);
             let held = phase.modes.iter().filter(|it| **it == Mode::Held);
-            limits.filter(|it| **it != Arc::Free).count() + held.count()
+            let reached = limits.filter(|it| **it != Arc::Free).count();
+            reached + held.count() + usize::from(phase.is_joined)
         };
         self.phases.iter().map(of).sum()
     }
@@ -131,6 +133,9 @@ impl Structure {
                 // What noise does at bounds are no arcs.
                 arcs.clear();
                 smooth(&mut phase, roughness);
+            }
+            if phase.are_controls_given() {
+                arcs.clear();
             }
             let found = contacts.of_phase(j, &phase);
             for touch in found.at_ends[0].iter().chain(&touched_before) {
@@ -185,7 +190,7 @@ impl Structure {
             }
             if begin > time[0] {
                 own.touches.fill(Arc::Free);
-                (own.jump, own.is_cut) = (None, false);
+                (own.jump, own.is_cut, own.is_joined) = (None, false, false);
             }
             for touch in contacts.touches.iter().filter(|it| (it.time - begin).abs() < 0.5 * step) {
                 own.touches[touch.limit] = touch.arc;
@@ -261,7 +266,8 @@ impl Structure {
     /// With a time inside of a phase at which controls may jump.
     pub fn with_cut(&self, j: usize, time: f64) -> Self {
         let mut other = self.clone();
-        let mut own = PhaseOfModes { jump: None, is_cut: true, ..self.phases[j].clone() };
+        let mut own =
+            PhaseOfModes { jump: None, is_cut: true, is_joined: false, ..self.phases[j].clone() };
         own.touches.fill(Arc::Free);
         // They were parts of the whole of it.
         own.steep.clear();

@@ -56,6 +56,8 @@ pub(super) mod polish {
 pub(super) mod structure {
     /// The Hamiltonian of a phase has at least this part of the size that it has in another.
     pub(crate) const PART_OF_LARGEST: f64 = 1e-8;
+    /// What multipliers are compared with, has at least this part of its size in another phase.
+    pub(crate) const PART_AT_REST: f64 = 1e-3;
     /// A shorter phase, for the whole time, is dropped.
     pub(crate) const SHORTEST: f64 = 0.004;
     /// So is one of fewer intervals of the grid.

@@ -13,7 +13,7 @@ use std::path::PathBuf;
 /// Draw signals of a solution as SVG or PDF
 #[derive(Args)]
 pub struct Plot {
-    /// The .sol.json of a solve
+    /// The .sol.json of a solve, or the .sim.json of a simulation
     #[arg(value_name = "SOLUTION")]
     solution: PathBuf,
     /// What to draw: a state, a control, a path condition, a report, a `plot` of the model,

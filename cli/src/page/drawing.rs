@@ -5,6 +5,7 @@ use super::json::Json;
 use super::plots::{Portrait, portraits};
 use super::strips::{Strip, strips};
 use super::units::{Unit, of_time};
+use super::runs::events;
 use serde::Serialize;
 
 /// What the scripts of a page draw.
@@ -85,11 +86,12 @@ fn marks(document: &Json) -> Vec<Moment> {
         Some(Moment { time, what: name.clone() })
     };
     let phases = document.at("phases").pairs().iter().skip(1).filter_map(phase);
-    let event = |it: &Json| {
+    let event = |(_, it): &(&str, &Json)| {
         let what = format!("{}: {}", it.at("surface").text(), it.at("kind").text());
         Some(Moment { time: it.at("time").number()?, what: what.replace('_', " ") })
     };
-    let events = document.at("events").list().iter().filter_map(event);
+    let events = events(document);
+    let events = events.iter().filter_map(event);
     let jumps = document.at("jumps").list().iter().filter_map(jump);
     jumps.chain(events).chain(phases).chain(switches.iter().filter_map(switch)).collect()
 }

@@ -293,3 +293,19 @@ link one -> two { same }";
     assert_eq!(document["status"], "not_finite");
     assert_eq!(document["phases"].as_object().map(serde_json::Map::len), Some(1));
 }
+/// An unknown of a solution holds unless the command line has another one.
+#[test]
+fn unknowns_of_a_solution_drive_phases_unless_told_otherwise() {
+    let text = "model turn\nfree k in [0, 5] guess 1
+phase a { time t in [0, 1]  state x start 1  dynamics { x' = -k }  end x == 0 }
+phase b { time t in [1, 2]  state x  dynamics { x' = k } }
+link a -> b { same }  minimize b.x(end)^2";
+    let folder = folder("phases_unknowns", &[("turn.fdc", text.as_bytes())]);
+    fdcc(&folder, &["solve", "turn.fdc", "--out", ".", "--log", "none"], "");
+    let driven = ["simulate", "turn.fdc", "--control", "turn.sol.json", "--json"];
+    for (more, expected) in [(&[][..], 0.0), (&["--set", "k=3"], -2.0)] {
+        let found = json(&fdcc(&folder, &[&driven[..], more].concat(), ""));
+        near(&found["phases"]["a"]["end"]["x"], expected);
+    }
+}
+

@@ -1,11 +1,13 @@
 //! What the scripts of a page draw: everything but the numbers of curves.
 
+use super::arrays::{Array, arrays};
+use super::colours::COLOURS;
 use super::figures::{Figure, figures, parts};
 use super::json::Json;
 use super::plots::{Portrait, portraits};
+use super::runs::events;
 use super::strips::{Strip, strips};
 use super::units::{Unit, of_time};
-use super::runs::events;
 use serde::Serialize;
 
 /// What the scripts of a page draw.
@@ -17,6 +19,10 @@ pub struct Drawing {
     /// The first and the last time, as shown.
     range: [f64; 2],
     pub figures: Vec<Figure>,
+    /// What is drawn as colours.
+    pub arrays: Vec<Array>,
+    /// Those, as red, green and blue.
+    colours: [[u8; 3]; 5],
     /// The pictures that the model asks for.
     pub portraits: Vec<Portrait>,
     /// For each document.
@@ -48,6 +54,8 @@ impl Drawing {
         let figures = figures(documents);
         Drawing {
             portraits: portraits(documents, &figures),
+            arrays: arrays(documents, &figures),
+            colours: COLOURS,
             names: names.iter().map(|it| (*it).to_owned()).collect(),
             time: Time { name: "t", label, unit, si },
             range: times(documents).map(|time| time / si),

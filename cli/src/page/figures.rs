@@ -96,6 +96,11 @@ impl Kind {
     }
 }
 
+    /// Whether it is of what a document is about: no replay and no measurement.
+    pub fn is_plan(self) -> bool {
+        matches!(self, Kind::Line | Kind::Steps)
+    }
+
 /// A value that must not be passed, in SI.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Limit {
@@ -125,10 +130,11 @@ const GROUPS: &[Group] = &[
 ];
 pub const STATES: &str = "States";
 pub const CONTROLS: &str = "Controls";
-const PATH: &str = "Path conditions";
+pub const PATH: &str = "Path conditions";
 pub const REPORTED: &str = "Reported";
 pub const COSTATES: &str = "Costates";
-const MULTIPLIERS: &str = "Multipliers of path conditions";
+pub const MULTIPLIERS: &str = "Multipliers of path conditions";
+pub const IMPULSES: &str = "Multipliers of bounds at one time";
 pub const HAMILTONIAN: &str = "Hamiltonian";
 pub const RESIDUALS: &str = "Residuals";
 const WORK: &str = "Each step of the loop";

@@ -3,7 +3,9 @@
 //!
 //! The page is made from the JSON document of the solve and holds it, with fewer digits.
 
+pub mod arrays;
 mod cells;
+mod colours;
 mod curves;
 mod drawing;
 mod estimates;
@@ -13,6 +15,7 @@ mod headline;
 pub mod json;
 mod located;
 mod measured;
+mod maps;
 pub mod notebook;
 pub mod pdf;
 pub mod plots;
@@ -45,6 +48,7 @@ const SCRIPT: &str = concat!(
     include_str!("assets/strips.js"),
     include_str!("assets/portrait.js"),
     include_str!("assets/convergence.js"),
+    include_str!("assets/map.js"),
     include_str!("assets/main.js")
 );
 /// A canvas has at least this many pixels for each of the page: enough to be printed.

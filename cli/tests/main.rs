@@ -18,6 +18,7 @@ mod integrators;
 mod limits;
 mod lsp;
 mod mpc;
+mod multipliers;
 mod new;
 mod none_found;
 mod pages;

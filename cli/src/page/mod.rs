@@ -12,6 +12,7 @@ mod estimates;
 pub mod figures;
 mod gradient;
 mod headline;
+mod impulses;
 pub mod json;
 mod located;
 mod measured;

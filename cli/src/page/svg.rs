@@ -114,7 +114,8 @@ fn plot_over_time(document: &Json, figure: &Figure, across: [f64; 2], time: &Uni
     let of_lines = curves.iter().flat_map(|(_, _, pieces)| pieces.iter().flatten());
     let of_points = points.iter().flat_map(|it| &it.1);
     let ends = of_points.flat_map(|it| it.bar.unwrap_or([it.value; 2]));
-    let values = of_lines.map(|it| it.1).chain(ends);
+    let zero = points.iter().any(|it| it.0 == Kind::Stems).then_some(0.0);
+    let values = of_lines.map(|it| it.1).chain(ends).chain(zero);
     let si = figure.unit.si;
     let limits: Vec<f64> = figure.limits.iter().map(|it| it.value / si).collect();
     let ends = |it: &Limit| {

@@ -1,5 +1,6 @@
 //! The numbers of a document that no plot shows, as tables.
 
+use super::impulses::impulses;
 use super::json::Json;
 use super::runs;
 use super::tags::{Cell, escape, section, table};
@@ -45,6 +46,7 @@ pub fn tables(document: &Json) -> String {
         switches(document),
         jumps(document),
         tried(document, "sequences", "Sequences of jumps"),
+        impulses(document),
         tried(document, "starts", "Starts"),
         end_multipliers(document),
         certificate(document),

@@ -19,6 +19,7 @@ mod certificate;
 mod contacts;
 mod costates;
 mod hold_sensitivities;
+mod impulses;
 mod insertion;
 mod joint;
 mod jump_edges;
@@ -46,7 +47,7 @@ mod tracks;
 mod tuning;
 
 pub(crate) use answer::Whole;
-pub use certificate::{Certificate, Check, Stretch, Switch};
+pub use certificate::{Certificate, Check, Impulse, Stretch, Switch};
 pub(crate) use contacts::Contacts;
 pub(crate) use joint::{Joint, Part};
 pub(crate) use mending::First;

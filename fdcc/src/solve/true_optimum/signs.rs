@@ -83,8 +83,7 @@ impl Contacts<'_> {
     }
 
     fn wrong_of_touch(&self, j: usize, limit: usize, arc: Arc) -> f64 {
-        let name = self.name(j, limit);
-        let kappa = self.located.link_multiplier(j, &format!("{name} reached")).unwrap_or(0.0);
+        let kappa = self.kappa_of_entry(j, limit).unwrap_or(0.0);
         self.part_at_once(j, limit, -side(arc) * kappa)
     }
 
@@ -106,7 +105,7 @@ impl Contacts<'_> {
     }
 
     /// The multiplier of `c = 0` at the first time of a phase; nothing where it is no condition.
-    fn kappa_of_entry(&self, j: usize, limit: usize) -> Option<f64> {
+    pub(super) fn kappa_of_entry(&self, j: usize, limit: usize) -> Option<f64> {
         let (located, name) = (self.located, self.name(j, limit));
         if j > 0 {
             return located.link_multiplier(j, &format!("{name} reached"));
@@ -119,7 +118,7 @@ impl Contacts<'_> {
     }
 
     /// Whether an equation at the last time reads a state that the limit reads.
-    fn is_given_in_the_end(&self, limit: usize) -> bool {
+    pub(super) fn is_given_in_the_end(&self, limit: usize) -> bool {
         let model = self.model;
         let states = self.limits.iter().filter(|it| it.state.is_some()).count();
         let read: Vec<usize> = match self.limits[limit].state {
@@ -131,12 +130,12 @@ impl Contacts<'_> {
         given.any(|state| read.contains(&state))
     }
 
-    fn name(&self, j: usize, limit: usize) -> String {
+    pub(super) fn name(&self, j: usize, limit: usize) -> String {
         self.located.chain.phases[j].path.origin(self.row(j, limit)).label.to_string()
     }
 
     /// A multiplier that acts at one time, by what it is worth over the range of its limit.
-    fn part_at_once(&self, j: usize, limit: usize, multiplier: f64) -> f64 {
+    pub(super) fn part_at_once(&self, j: usize, limit: usize, multiplier: f64) -> f64 {
         let duration = self.located.structure.ends()[1] - self.located.structure.ends()[0];
         multiplier * self.ranges[limit] / (self.size(j) * duration)
     }
@@ -145,8 +144,8 @@ impl Contacts<'_> {
 /// The `F` of an arc at its two ends, from what it is on the first and on the last intervals; and
 /// how uncertain that is.
 pub(super) struct At {
-    begin: [f64; 2],
-    end: [f64; 2],
+    pub begin: [f64; 2],
+    pub end: [f64; 2],
 }
 
 impl At {

@@ -15,8 +15,9 @@ mod headline;
 mod impulses;
 pub mod json;
 mod located;
-mod measured;
 mod maps;
+mod measured;
+mod moves;
 pub mod notebook;
 pub mod pdf;
 pub mod plots;
@@ -47,9 +48,9 @@ const SCRIPT: &str = concat!(
     include_str!("assets/data.js"),
     include_str!("assets/plot.js"),
     include_str!("assets/strips.js"),
+    include_str!("assets/map.js"),
     include_str!("assets/portrait.js"),
     include_str!("assets/convergence.js"),
-    include_str!("assets/map.js"),
     include_str!("assets/main.js")
 );
 /// A canvas has at least this many pixels for each of the page: enough to be printed.

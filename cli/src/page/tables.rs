@@ -2,6 +2,7 @@
 
 use super::impulses::impulses;
 use super::json::Json;
+use super::moves::moves;
 use super::runs;
 use super::tags::{Cell, escape, section, table};
 use super::units::{of_condition, of_time, of_value, per};
@@ -43,10 +44,11 @@ pub fn tables(document: &Json) -> String {
     }
     [
         sensitivities(document),
+        moves(document),
         switches(document),
+        impulses(document),
         jumps(document),
         tried(document, "sequences", "Sequences of jumps"),
-        impulses(document),
         tried(document, "starts", "Starts"),
         end_multipliers(document),
         certificate(document),

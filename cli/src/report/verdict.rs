@@ -19,9 +19,22 @@ mod next;
 mod rest;
 pub mod without_value;
 
+/// More phases than this are not told one by one,
+const MOST_PHASES: usize = 8;
+/// but so many of them, and how many more there are.
+const FIRST_PHASES: usize = 3;
+
 /// The size of the problem: one line, or one for each phase.
 pub fn headline(chain: &Chain) -> String {
-    chain.phases.iter().map(phase).collect()
+    let all = &chain.phases;
+    if all.len() <= MOST_PHASES {
+        return all.iter().map(phase).collect();
+    }
+    let (first, others) = all.split_at(FIRST_PHASES);
+    let last = &others[others.len() - 1].name;
+    let unknowns = plural(others.iter().map(unknowns).sum(), "unknown");
+    let first: String = first.iter().map(phase).collect();
+    format!("{first} and {} more phases up to {last}   {unknowns}\n", others.len())
 }
 
 fn phase(problem: &Problem) -> String {

@@ -40,7 +40,7 @@ ROD = "\n".join([
 DARK = ["--force-dark-mode", "--blink-settings=preferredColorScheme=0"]
 
 
-def shoot(page, picture, width, height, *options):
+def shoot(page, picture, width, height, *options, has_shades=False):
     """Chromium windows are not narrower than 500 pixels: a narrow page stands in a frame."""
     if width < 500:
         frame = page.with_name(f"{page.stem}.frame.html")
@@ -56,7 +56,9 @@ def shoot(page, picture, width, height, *options):
         check=True, capture_output=True,
     )
     image = Image.open(picture).convert("RGB").crop((0, 0, width, height))
-    image.quantize(128, dither=Image.Dither.NONE).save(picture, optimize=True)
+    # Hundreds of shades would take the colours of the words.
+    image = image if has_shades else image.quantize(128, dither=Image.Dither.NONE)
+    image.save(picture, optimize=True)
 
 
 def shoot_site():
@@ -87,7 +89,7 @@ def main():
         shoot(folder / "certified" / "racecar.html", FOLDER / "course-1200.png", 1200, 1500)
         (folder / "rod.fdc").write_text(ROD)
         run("solve", "rod.fdc", "--out", ".", "--log", "none")
-        shoot(folder / "rod.html", FOLDER / "rod-1200.png", 1200, 1000)
+        shoot(folder / "rod.html", FOLDER / "rod-1200.png", 1200, 1000, has_shades=True)
         run("grad", str(ROOT / "models" / "crossing.fdc"), "--out", ".")
         shoot(folder / "crossing.grad.html", FOLDER / "grad-1200.png", 1200, 900)
         (folder / "follow.fdc").write_text(FOLLOW)

@@ -61,58 +61,65 @@ impl Array {
     }
 }
 
-/// All arrays of documents, in the order of their figures.
+/// All arrays of documents, in the order of their figures. Those of the same name have one scale,
+/// so that they can be compared.
 pub fn arrays(documents: &[Json], figures: &[Figure]) -> Vec<Array> {
-    let numbered: Vec<_> = figures.iter().map(|it| numbered(&it.name)).collect();
-    let goes_on = |at: usize| {
-        let [a, b] = [&figures[at], &figures[at + 1]];
-        let is_alike = a.group == b.group && a.unit == b.unit;
-        let names = numbered[at].zip(numbered[at + 1]);
-        is_alike && names.is_some_and(|(a, b)| a.0 == b.0 && a.1 + 1 == b.1)
-    };
     let mut all = Vec::new();
-    let mut begin = 0;
-    for at in 0..figures.len() {
-        if at + 1 < figures.len() && goes_on(at) {
+    for own in runs(figures) {
+        let first = &figures[own[0]];
+        let Some((name, number)) = numbered(&first.name) else { continue };
+        if own.len() < FEWEST || !OVER_TIME.contains(&first.group) {
             continue;
         }
-        let own: Vec<usize> = (begin..=at).collect();
-        begin = at + 1;
-        let first = &figures[own[0]];
-        if let Some((name, number)) = numbered[own[0]]
-            && own.len() >= FEWEST
-            && OVER_TIME.contains(&first.group)
-        {
-            all.extend((0..documents.len()).filter_map(|of| {
-                let (name, unit) = (name.to_owned(), first.unit.clone());
-                let (group, figures_of) = (first.group, own.clone());
-                let array = Array {
-                    group,
-                    name,
-                    unit,
-                    of,
-                    first: number,
-                    figures: figures_of,
-                    range: [0.0; 2],
-                };
-                array.measured(documents, figures)
-            }));
-        }
+        let array = |of: usize| Array {
+            group: first.group,
+            name: name.to_owned(),
+            unit: first.unit.clone(),
+            of,
+            first: number,
+            figures: own.clone(),
+            range: NOTHING,
+        };
+        let known = (0..documents.len()).map(|of| array(of).measured(documents, figures));
+        let known: Vec<Array> = known.filter(|it| it.range[0] <= it.range[1]).collect();
+        let range = known.iter().fold(NOTHING, |all, it| joined(all, it.range));
+        all.extend(known.into_iter().map(|it| Array { range, ..it }));
     }
     all
+}
+
+/// Places of figures of one group and one unit, each of which has the number after the one before.
+fn runs(figures: &[Figure]) -> Vec<Vec<usize>> {
+    let goes_on = |a: &Figure, b: &Figure| {
+        let names = numbered(&a.name).zip(numbered(&b.name));
+        let is_next = names.is_some_and(|(a, b)| a.0 == b.0 && a.1 + 1 == b.1);
+        a.group == b.group && a.unit == b.unit && is_next
+    };
+    let mut place = 0;
+    let run = |own: &[Figure]| {
+        place += own.len();
+        (place - own.len()..place).collect()
+    };
+    figures.chunk_by(|a, b| goes_on(a, b)).map(run).collect()
+}
+
+/// No values.
+const NOTHING: [f64; 2] = [f64::INFINITY, f64::NEG_INFINITY];
+
+fn joined(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0].min(b[0]), a[1].max(b[1])]
 }
 
 /// The groups of plots that have arrays.
 const OVER_TIME: [&str; 6] = [STATES, CONTROLS, PATH, REPORTED, COSTATES, MULTIPLIERS];
 
 impl Array {
-    /// With the range of its values; nothing where it has none.
-    fn measured(self, documents: &[Json], figures: &[Figure]) -> Option<Array> {
+    /// With the range of its values.
+    fn measured(self, documents: &[Json], figures: &[Figure]) -> Array {
         let rows = self.rows(documents, figures);
         let values = rows.iter().flatten().flatten().map(|it| it.1);
-        let none = [f64::INFINITY, f64::NEG_INFINITY];
-        let range = values.fold(none, |[a, b], it| [a.min(it), b.max(it)]);
-        (range[0] <= range[1]).then_some(Array { range, ..self })
+        let range = values.fold(NOTHING, |all, it| joined(all, [it, it]));
+        Array { range, ..self }
     }
 }
 
@@ -166,6 +173,17 @@ mod tests {
         assert_eq!(found(&names), [("T.x".into(), 0, 9)]);
         names.remove(4);
         assert_eq!(found(&names), [], "one is missing");
+    }
+
+    #[test]
+    fn arrays_of_two_documents_share_a_scale() {
+        let names: Vec<String> = (1..9).map(|it| format!("T{it}")).collect();
+        let [own] = document(&names);
+        let text = serde_json::to_string(&own).expect("text").replace("17", "70");
+        let documents = [own, serde_json::from_str(&text).expect("JSON")];
+        let all = arrays(&documents, &figures(&documents));
+        let found: Vec<_> = all.iter().map(|it| (it.of, it.range)).collect();
+        assert_eq!(found, [(0, [0.0, 70.0]), (1, [0.0, 70.0])]);
     }
 
     #[test]

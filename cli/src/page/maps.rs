@@ -28,7 +28,7 @@ pub fn draw(
     let lowest = array.first as f64 - 0.5;
     let ranges = [across, [lowest, lowest + rows.len() as f64]];
     let mut chart = chart(&map, ranges)?;
-    let titles = [titled("t", time), format!("index of {}", array.signal())];
+    let titles = [titled("t", time), format!("index of {}", array.name)];
     draw_axes(&mut chart, ranges, &titles)?;
     // From the top down, each row and each span to the end of what is drawn later: between
     // neighbours that end where the next one begins there would be a fine line.

@@ -89,7 +89,8 @@ fn many_phases_are_told_in_a_few_lines() {
 free rate in [0.1, 9] guess 1
 phase run for each csv(\"run_*.csv\") columns t, x {
   time t in [0, 1]
-  state x start 1
+  free hot in [0.5, 2] guess 1
+  state x start hot
   dynamics { x' = -rate*x }
   fit run: x sd 0.1
 }";
@@ -107,6 +108,11 @@ phase run for each csv(\"run_*.csv\") columns t, x {
             let more = format!(" and {} more phases up to run[{count}]   ", count - 3);
             assert!(head[2].starts_with(" run[3]") && head[3].starts_with(&more), "{words}");
             assert!(head[3].ends_with(" unknowns"), "{words}");
+            // The rate and two of these; each has a line of its own, too.
+            let result = words.lines().find(|it| it.contains(" objective ")).expect("a line");
+            assert!(result.ends_with(&format!("   and {} more", count + 1 - 3)), "{result}");
+            let estimates = words.lines().filter(|it| it.starts_with(" est   run["));
+            assert_eq!(estimates.count(), count as usize, "{words}");
         }
     }
     let all = json(&fdcc(&folder, &["solve", "decay.fdc", "--json", "--no-verify"], ""));

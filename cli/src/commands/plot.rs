@@ -18,9 +18,9 @@ pub struct Plot {
     /// The .sol.json of a solve, or the .sim.json of a simulation
     #[arg(value_name = "SOLUTION")]
     solution: PathBuf,
-    /// What to draw: a state, an array of them as a map of colours, a control, a path condition, a report, a `plot` of the model,
-    /// `costate(x)`, `multiplier(c)`, `impulse(c)`, `residual(x)` or `hamiltonian`; repeatable; all states and
-    /// controls if left out
+    /// What to draw: a state, an array of them as a map of colours, a control, a path condition, a
+    /// report, a `plot` of the model, `costate(x)`, `multiplier(c)`, `impulse(c)`, `residual(x)` or
+    /// `hamiltonian`; repeatable; all states and controls if left out
     #[arg(long, value_name = "NAME")]
     signal: Vec<String>,
     /// Draw it over this signal instead of over the time

@@ -10,9 +10,10 @@ use crate::output::document::{Document, Seconds};
 use crate::output::named::Named;
 use crate::output::optimality::on_the_true_system;
 use crate::output::rows::Row;
+use crate::output::simulation_of_phases::PhasesDocument;
 use crate::output::{self, gradient as gradients, saved, simulation as simulations};
 use crate::page::notebook;
-use fdcc::{Gradient, Model, Record, Simulation, Solution};
+use fdcc::{Gradient, Model, Record, Simulation, SimulationOfPhases, Solution};
 use fdcc_grammar::{Diagnostic, SourceFile};
 use std::path::Path;
 use std::sync::OnceLock;
@@ -139,6 +140,11 @@ pub fn diagnostics(diagnostics: &[Diagnostic], source: &SourceFile) -> String {
 /// The document that `fdcc simulate --json` prints.
 pub fn simulation(simulated: &Simulation, model: &Model) -> String {
     output::json(&simulations::SimulationDocument::new(simulated, model))
+}
+
+/// The same of a model with phases.
+pub fn simulation_of_phases(simulated: &SimulationOfPhases, model: &Model) -> String {
+    output::json(&PhasesDocument::new(simulated, model))
 }
 
 /// The document that `fdcc grad --json` prints of the derivatives of the expression `of`; with

@@ -17,7 +17,8 @@ mod sweep;
 mod version;
 mod watch;
 
-pub use answers::{Answer, Saved, diagnostics, drawn, gradient, row, simulation};
+pub use answers::{Answer, Saved, diagnostics, drawn, gradient, row};
+pub use answers::{simulation, simulation_of_phases};
 
 use std::process::ExitCode;
 

@@ -9,6 +9,10 @@ const NAMES: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 /// What is done on a page as a reader would, and what it then is like.
 const PROBE: &str = "<script>
 addEventListener('load', () => {
+  document.querySelectorAll('details.each').forEach((it) => {
+    it.open = true;
+    unfold(it);
+  });
   charts[0].chart.setScale('x', { min: page.range[0], max: (page.range[0] + page.range[1]) / 2 });
   document.getElementById('whole').click();
   document.querySelectorAll('select').forEach((list) => {
@@ -94,6 +98,13 @@ fn pages_are_drawn_without_complaints_and_fit_every_width() {
     for model in models.iter().map(String::as_str).chain(["ramp.fdc", &phases]) {
         look(browser, &solved(&folder, model));
     }
+    let rod = crate::arrays::rod(9);
+    for (name, text) in [("rod", &rod[..]), ("denham", crate::multipliers::DENHAM)] {
+        std::fs::write(folder.join(format!("{name}.fdc")), text).expect("written");
+    }
+    look(browser, &solved(&folder, "denham.fdc"));
+    expect_exit(&fdcc(&folder, &["simulate", "rod.fdc", "--out", "."], ""), 0, "simulate");
+    look(browser, &folder.join("rod.sim.html"));
     let both = ["report", "block.sol.json", "ramp.sol.json", "--out", "both.html"];
     expect_exit(&fdcc(&folder, &both, ""), 0, "report");
     look(browser, &folder.join("both.html"));

@@ -1,6 +1,7 @@
 //! The command as a user sees it, in one program. `cargo test --release --test all grad::` runs
 //! the tests of one file.
 
+mod arrays;
 mod browser;
 mod clusters;
 mod commands;
@@ -17,6 +18,7 @@ mod integrators;
 mod limits;
 mod lsp;
 mod mpc;
+mod multipliers;
 mod new;
 mod none_found;
 mod pages;

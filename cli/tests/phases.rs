@@ -82,6 +82,43 @@ fn phases_of_files_are_told_by_number_and_file() {
     assert!((hot - 92.0090864).abs() < 1e-5, "{hot}");
 }
 
+/// Of many experiments the first are told, and how many more there are; JSON has them all.
+#[test]
+fn many_phases_are_told_in_a_few_lines() {
+    let text = "model decay
+free rate in [0.1, 9] guess 1
+phase run for each csv(\"run_*.csv\") columns t, x {
+  time t in [0, 1]
+  free hot in [0.5, 2] guess 1
+  state x start hot
+  dynamics { x' = -rate*x }
+  fit run: x sd 0.1
+}";
+    let folder = folder("phases_many", &[("decay.fdc", text.as_bytes())]);
+    for (count, lines) in [(8, 8), (9, 4), (80, 4)] {
+        for at in 1..=count {
+            let rows = format!("t,x\n0.5,{}\n1,0.2\n", 0.4 + 0.001 * f64::from(at));
+            std::fs::write(folder.join(format!("run_{at}.csv")), rows).expect("written");
+        }
+        let output = fdcc(&folder, &["solve", "decay.fdc", "--log", "none", "--no-verify"], "");
+        let words = stdout(&output);
+        let head: Vec<&str> = words.lines().take_while(|it| !it.starts_with(" done")).collect();
+        assert_eq!(head.len(), lines, "{words}");
+        if lines < count as usize {
+            let more = format!(" and {} more phases up to run[{count}]   ", count - 3);
+            assert!(head[2].starts_with(" run[3]") && head[3].starts_with(&more), "{words}");
+            assert!(head[3].ends_with(" unknowns"), "{words}");
+            // The rate and two of these; each has a line of its own, too.
+            let result = words.lines().find(|it| it.contains(" objective ")).expect("a line");
+            assert!(result.ends_with(&format!("   and {} more", count + 1 - 3)), "{result}");
+            let estimates = words.lines().filter(|it| it.starts_with(" est   run["));
+            assert_eq!(estimates.count(), count as usize, "{words}");
+        }
+    }
+    let all = json(&fdcc(&folder, &["solve", "decay.fdc", "--json", "--no-verify"], ""));
+    assert_eq!(all["phases"].as_object().map(serde_json::Map::len), Some(80));
+}
+
 /// What is not solved yet: `tests/tests/chains.rs` says why.
 const UNSOLVED: &[&str] = &["goddard_arcs"];
 
@@ -261,6 +298,22 @@ link a -> b { same }";
     // The control is 4 on average.
     for (more, expected) in [(&[][..], 1.0), (&["--set", "k=0"], 5.0)] {
         assert!((end(more) - expected).abs() < 1e-6, "{more:?}: {}", end(more));
+    }
+}
+
+/// An unknown of a solution holds unless the command line has another one.
+#[test]
+fn unknowns_of_a_solution_drive_phases_unless_told_otherwise() {
+    let text = "model turn\nfree k in [0, 5] guess 1
+phase a { time t in [0, 1]  state x start 1  dynamics { x' = -k }  end x == 0 }
+phase b { time t in [1, 2]  state x  dynamics { x' = k } }
+link a -> b { same }  minimize b.x(end)^2";
+    let folder = folder("phases_unknowns", &[("turn.fdc", text.as_bytes())]);
+    fdcc(&folder, &["solve", "turn.fdc", "--out", ".", "--log", "none"], "");
+    let driven = ["simulate", "turn.fdc", "--control", "turn.sol.json", "--json"];
+    for (more, expected) in [(&[][..], 0.0), (&["--set", "k=3"], -2.0)] {
+        let found = json(&fdcc(&folder, &[&driven[..], more].concat(), ""));
+        near(&found["phases"]["a"]["end"]["x"], expected);
     }
 }
 

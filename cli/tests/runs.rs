@@ -32,6 +32,59 @@ fn a_simulation_has_a_page_with_its_events() {
     assert!(marks.len() == 2 && (marks[0] - (3.0f64 / 9.81).sqrt()).abs() < 1e-6, "{marks:?}");
 }
 
+/// A fall of 1 s, half of the speed, and a slide that stops after `9.81/2/5` s.
+const DROP: &str = "model drop
+phase fall { time t in [0, 1]  state h start 5  state v start 0
+  dynamics { h' = v  v' = -9.81 }  plot speed: v over h }
+phase slide { time t in [1, 4]  state h  state v  surface slip = v
+  dynamics { h' = v  v' in -5*Sgn(slip) } }
+link fall -> slide { same v := 0.5*v }";
+
+/// One axis for all phases, with the link and the event marked; `report` and `plot` draw the same.
+#[test]
+fn a_simulation_of_phases_has_a_page_and_pictures() {
+    let folder = folder("simulated_phases", &[("drop.fdc", DROP.as_bytes())]);
+    expect_exit(&fdcc(&folder, &["simulate", "drop.fdc", "--out", "."], ""), 0, "simulate");
+    let report = ["report", "drop.sim.json", "--out", "again.html"];
+    expect_exit(&fdcc(&folder, &report, ""), 0, "report");
+    for name in ["drop.sim.html", "again.html"] {
+        let page = page(&folder, name);
+        assert!(page.contains("Simulated to the end, 2 phases, 1 event"), "{name}");
+        assert!(page.contains("<td>slide</td><td>slip</td><td>enters sliding</td>"), "{name}");
+        let drawn = drawing(&page);
+        let marks = drawn["marks"].as_array().expect("marks").iter();
+        let marks: Vec<_> = marks.map(|it| (number(&it["time"]), text_of(&it["what"]))).collect();
+        assert_eq!(marks.len(), 2, "{marks:?}");
+        assert!((marks[0].0 - 1.981).abs() < 1e-9 && marks[0].1 == "slip: enters sliding");
+        assert_eq!(marks[1], (1.0, "slide"));
+        assert_eq!(drawn["figures"][0]["curves"].as_array().map(Vec::len), Some(2));
+        assert_eq!(drawn["portraits"][0]["name"], "speed");
+    }
+    let plot = ["plot", "drop.sim.json", "--signal", "v", "--out", "v.svg"];
+    expect_exit(&fdcc(&folder, &plot, ""), 0, "plot");
+    // A phase each: between them the speed jumps.
+    let lines = page(&folder, "v.svg").matches("stroke=\"#1F5FA8\"").count();
+    assert_eq!(lines, 2);
+}
+
+/// The phase that does not reach its last time is named.
+#[test]
+fn a_phase_that_ends_early_is_told_on_the_page() {
+    let text = DROP.replace("v' = -9.81", "v' = -1/sqrt(h - 4)");
+    let folder = folder("simulated_phases_early", &[("drop.fdc", text.as_bytes())]);
+    expect_exit(&fdcc(&folder, &["simulate", "drop.fdc", "--out", "."], ""), 0, "simulate");
+    let text = text.replace("[0, 1]", "[0, 9]").replace("[1, 4]", "[9, 10]");
+    fs::write(folder.join("drop.fdc"), text).expect("written");
+    expect_exit(&fdcc(&folder, &["simulate", "drop.fdc", "--out", "."], ""), 2, "simulate");
+    let page = page(&folder, "drop.sim.html");
+    let title = "Simulated, 1 phase, 0 events; ended early: not finite in phase fall";
+    assert!(page.contains(title), "{page}");
+}
+
+fn text_of(it: &serde_json::Value) -> &str {
+    it.as_str().expect("a text")
+}
+
 /// The derivatives come first; `fdcc report` makes the same page of the document.
 #[test]
 fn a_gradient_has_a_page_with_its_derivatives() {

@@ -27,10 +27,20 @@ PRODUCT = ["sweep", "block.fdc", "mu=0.05:0.05:0.6", "m=0.5:0.25:3", "sigma=0.1"
            "--out", "product", "--log", "none"]
 # The first model of the page is the block.
 FOLLOW = (ROOT / "docs" / "real-time.md").read_text().split("```fdc\n")[1].split("```")[0]
+# Twenty parts of a rod that is heated at one end.
+PARTS = 20
+CELLS = range(1, PARTS + 1)
+ROD = "\n".join([
+    "model rod", "time t in [0, 1] [s]", "control heat [K/s] in [0, 400]",
+    *(f"state T{at} [K] start 20" for at in CELLS), "dynamics {",
+    *(f"  T{at}' = (T{max(at - 1, 1)} - 2*T{at} + T{min(at + 1, PARTS)})*60[1/s]{' + heat' if at == 1 else ''}"
+      for at in CELLS), "}",
+    f"minimize (T{PARTS}(end)/1[K] - 40)^2 + integral((heat/1[K/s])^2)*1e-3/1[s]",
+    "method { N = 60  scheme = gauss2 }", ""])
 DARK = ["--force-dark-mode", "--blink-settings=preferredColorScheme=0"]
 
 
-def shoot(page, picture, width, height, *options):
+def shoot(page, picture, width, height, *options, has_shades=False):
     """Chromium windows are not narrower than 500 pixels: a narrow page stands in a frame."""
     if width < 500:
         frame = page.with_name(f"{page.stem}.frame.html")
@@ -46,7 +56,9 @@ def shoot(page, picture, width, height, *options):
         check=True, capture_output=True,
     )
     image = Image.open(picture).convert("RGB").crop((0, 0, width, height))
-    image.quantize(128, dither=Image.Dither.NONE).save(picture, optimize=True)
+    # Hundreds of shades would take the colours of the words.
+    image = image if has_shades else image.quantize(128, dither=Image.Dither.NONE)
+    image.save(picture, optimize=True)
 
 
 def shoot_site():
@@ -75,6 +87,9 @@ def main():
                 shoot(folder / f"{name}.html", picture, width, height)
         run("solve", str(ROOT / "models" / "racecar.fdc"), "--out", "certified", "--log", "none")
         shoot(folder / "certified" / "racecar.html", FOLDER / "course-1200.png", 1200, 1500)
+        (folder / "rod.fdc").write_text(ROD)
+        run("solve", "rod.fdc", "--out", ".", "--log", "none")
+        shoot(folder / "rod.html", FOLDER / "rod-1200.png", 1200, 1000, has_shades=True)
         run("grad", str(ROOT / "models" / "crossing.fdc"), "--out", ".")
         shoot(folder / "crossing.grad.html", FOLDER / "grad-1200.png", 1200, 900)
         (folder / "follow.fdc").write_text(FOLLOW)

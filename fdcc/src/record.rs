@@ -44,6 +44,18 @@ pub struct Record<'s> {
     pub phases: Vec<Record<'s>>,
 }
 
+impl Record<'_> {
+    /// Without parameters and unknowns, also of phases: those of a model hold that it drives.
+    #[must_use]
+    pub fn without_values(mut self) -> Self {
+        for record in self.phases.iter_mut() {
+            (record.params, record.free) = Default::default();
+        }
+        (self.params, self.free) = Default::default();
+        self
+    }
+}
+
 /// The settings of the method that a replay or a start depends on, as far as they are known.
 ///
 /// ```

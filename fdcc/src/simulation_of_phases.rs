@@ -39,6 +39,32 @@ impl SimulationOfPhases {
 }
 
 impl Model {
+    /// The model with the parameters and unknowns of a solution. Other values may be given to it
+    /// before [`simulate_phases`](Model::simulate_phases) takes the rest of the record, which is
+    /// [`without_values`](Record::without_values).
+    ///
+    /// ```
+    /// let text = "free k in [0, 5] guess 1
+    /// phase a { time t in [0, 1]  state x start 1  dynamics { x' = -k }  end x == 0 }
+    /// phase b { time t in [1, 2]  state x  dynamics { x' = k } }
+    /// link a -> b { same }  minimize b.x(end)^2";
+    /// let model = fdcc::Model::from_text("turn", text)?;
+    /// let solution = model.solve(&fdcc::Options::default())?;
+    /// let other = model.with_values_of(&solution.record()).driven_with(&[("k", 2.0.into())])?;
+    /// let record = solution.record().without_values();
+    /// let found = other.simulate_phases(Some(&record), &fdcc::Accuracy::default())?;
+    /// assert!((found.all[0].result.end[0] + 1.0).abs() < 1e-9);
+    /// # Ok::<(), fdcc::Error>(())
+    /// ```
+    #[must_use]
+    pub fn with_values_of(&self, record: &Record) -> Model {
+        let mut meaning = self.meaning().clone();
+        let params = record.params.iter().map(|(name, value)| ((*name).to_owned(), *value));
+        meaning.restore_params(&params.collect::<Vec<_>>());
+        record.free.iter().for_each(|(name, value)| meaning.set_free(name, *value));
+        self.with_meaning(meaning)
+    }
+
     /// Simulates the phases of the true system one after the other, with guessed controls or those
     /// of a solution; an open state begins where a link puts it, else as in the solution, else as
     /// it is guessed. That one does not reach its last time is no error: its status says so.

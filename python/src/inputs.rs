@@ -127,12 +127,7 @@ impl Driven {
                 )
             }
             Some(Driver::Solution(earlier)) => {
-                let replay = match &earlier.read()? {
-                    Known::Solution(it) => {
-                        Replay::new(&it.get().solution().record(), model.meaning())
-                    }
-                    Known::File(saved) => Replay::new(&saved.record(), model.meaning()),
-                };
+                let replay = Replay::new(&earlier.read()?.record(), model.meaning());
                 let replay = replay.and_then(|replay| replay.check().map(|()| replay));
                 let replay = replay.map_err(PyValueError::new_err)?;
                 let adapted = model.changed(|meaning| {
@@ -142,6 +137,51 @@ impl Driven {
                 adapted.and_then(|model| with(&model, Followed::Known(replay.controls)))
             }
         })
+    }
+}
+
+/// A model with phases, and the solution that drives it.
+pub struct DrivenPhases {
+    pub model: fdcc::Model,
+    solution: Option<Known>,
+}
+
+impl DrivenPhases {
+    /// What a solution says of parameters and unknowns comes first, so that the values have the
+    /// last word.
+    pub fn new(
+        model: &fdcc::Model,
+        driver: Option<Driver>,
+        values: &[(String, Value)],
+    ) -> PyResult<Result<Self, Error>> {
+        let solution = match driver {
+            None => None,
+            Some(Driver::Solution(earlier)) => Some(earlier.read()?),
+            Some(Driver::Rows(..)) => {
+                let why = "each phase has controls of its own: `u` takes a solution";
+                return Err(PyValueError::new_err(why));
+            }
+        };
+        let values: Vec<(&str, Value)> =
+            values.iter().map(|(name, value)| (name.as_str(), value.clone())).collect();
+        let own = solution.as_ref().map(|it| model.with_values_of(&it.record()));
+        let changed = own.as_ref().unwrap_or(model).driven_with(&values);
+        Ok(changed.map(|model| DrivenPhases { model, solution }))
+    }
+
+    /// Simulates, phase after phase.
+    pub fn simulate(&self, accuracy: &fdcc::Accuracy) -> Result<fdcc::SimulationOfPhases, Error> {
+        let record = self.solution.as_ref().map(|it| it.record().without_values());
+        self.model.simulate_phases(record.as_ref(), accuracy)
+    }
+}
+
+impl Known {
+    fn record(&self) -> fdcc::Record<'_> {
+        match self {
+            Known::Solution(it) => it.get().solution().record(),
+            Known::File(saved) => saved.record(),
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::errors::{raised, wrong_model};
 use crate::gradient::Gradient;
-use crate::inputs::{Data, Driven, Driver, Earlier, Known, Values, values};
+use crate::inputs::{Data, Driven, DrivenPhases, Driver, Earlier, Known, Values, values};
 use crate::simulation::Simulation;
 use crate::solution::Solution;
 use crate::watch::Watch;
@@ -243,6 +243,9 @@ impl Model {
         time_limit: Option<f64>,
     ) -> PyResult<Simulation> {
         let watch = Arc::new(Watch::new(time_limit));
+        if !self.model.phases().is_empty() {
+            return self.simulate_phases(py, given, controls, times, rtol, &watch);
+        }
         let driven = Driven::new(&self.model, controls, &values(given))?;
         let driven = driven.map_err(|error| self.raised(py, error))?;
         let (model, accuracy) = (driven.model.clone(), accuracy(times, rtol, &watch)?);
@@ -290,6 +293,30 @@ impl Model {
         watch.raised()?;
         let gradient = found.map_err(|error| self.raised(py, error))?;
         Ok(Gradient::new(of.unwrap_or_else(|| "objective".into()), gradient, model))
+    }
+}
+
+impl Model {
+    fn simulate_phases(
+        &self,
+        py: Python,
+        given: Values,
+        controls: Option<Driver>,
+        times: Option<Vec<f64>>,
+        rtol: Option<f64>,
+        watch: &Arc<Watch>,
+    ) -> PyResult<Simulation> {
+        if times.is_some() {
+            let why = "`t` needs a model of one piece; phases have times of their own";
+            return Err(PyValueError::new_err(why));
+        }
+        let driven = DrivenPhases::new(&self.model, controls, &values(given))?;
+        let driven = driven.map_err(|error| self.raised(py, error))?;
+        let accuracy = Accuracy { points_between: true, ..accuracy(None, rtol, watch)? };
+        let simulated = watch.aside(py, || driven.simulate(&accuracy));
+        watch.raised_but_interrupt(py)?;
+        let simulated = simulated.map_err(|error| self.raised(py, error))?;
+        Ok(Simulation::of_phases(simulated, driven.model))
     }
 }
 

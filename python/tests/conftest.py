@@ -47,3 +47,17 @@ def slide() -> fdcc.Model:
         dynamics { x' = v  v' in F - mu * Sgn(slip) }
         """
     )
+
+
+@pytest.fixture(scope="session")
+def drop() -> fdcc.Model:
+    """A fall of 1 s from 5 m, and a slide with half the speed that stops after g/2/5 s."""
+    return fdcc.compile(
+        """model drop
+        phase fall { time t in [0, 1] [s]  state h [m] start 5  state v [m/s] start 0
+          dynamics { h' = v  v' = -9.81[m/s^2] }  minimize h(end) }
+        phase slide { time t in [1, 4] [s]  state h [m]  state v [m/s]  surface slip = v
+          dynamics { h' = v  v' in -5[m/s^2]*Sgn(slip) }  minimize h(end) }
+        link fall -> slide { same v := 0.5*v }
+        """
+    )

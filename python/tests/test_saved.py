@@ -87,6 +87,16 @@ def test_simulations_and_gradients_go_through_pickle_and_copy(slide):
     assert copy.deepcopy(simulated) is simulated and copy.deepcopy(gradient) is gradient
 
 
+def test_simulations_of_phases_go_through_pickle(drop):
+    simulated = drop.simulate()
+    for it in (again(simulated), again(again(simulated))):
+        assert list(it.phases) == ["fall", "slide"] and it.objective == simulated.objective
+        assert np.array_equal(it["slide.v"], simulated["slide.v"]) and it.end == simulated.end
+    slide = again(simulated.phases["slide"])
+    assert slide.status == "completed" and slide.objective == slide.end["h"]
+    assert np.array_equal(slide["h"], simulated["slide.h"]) and slide["h"].unit == "m"
+
+
 def test_diagnostics_go_through_pickle_and_copy():
     found = fdcc.check("time t in [0, 1]\nstate x start 0\ndynamics { x' = y }")
     for it in (again(found), copy.deepcopy(found)):

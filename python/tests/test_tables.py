@@ -63,6 +63,20 @@ def test_phases_are_drawn_one_after_the_other(models):
         solution.plot(["q"])
 
 
+def test_simulated_phases_have_a_table_each_and_are_drawn_one_after_the_other(drop):
+    pytest.importorskip("pandas")
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    simulated = drop.simulate()
+    assert list(simulated.to_pandas()) == ["fall", "slide"]
+    height, _ = simulated.plot()
+    fall, slide = (it.get_xdata() for it in height.lines)
+    assert fall[0] == 0 and fall[-1] == slide[0] == 1 and slide[-1] == 4
+    assert len(simulated.plot(["fall.h"])[0].lines) == 1 and len(simulated.plot("h")) == 1
+    with pytest.raises(KeyError, match="there is no 'q'.*fall.h"):
+        simulated.plot("q")
+
+
 def test_a_jump_has_two_rows(models):
     pytest.importorskip("pandas")
     solution = fdcc.Model(models / "bounce.fdc").solve()

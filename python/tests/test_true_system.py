@@ -113,3 +113,41 @@ def test_what_cannot_be_differentiated_is_told(slide):
         slide.grad("x(end)", wrt=["x"])
     with pytest.raises(fdcc.ModelError, match="y"):
         slide.grad("y(end)")
+
+
+def test_phases_are_simulated_one_after_the_other(drop):
+    found = drop.simulate()
+    landed = 5 - 9.81 / 2
+    assert found.phases["fall"]["h"][-1] == pytest.approx(landed)
+    rest = landed - 4.905**2 / 10
+    assert found["slide.h"][-1] == pytest.approx(rest) and found["slide.h"].unit == "m"
+    assert list(found.t) == [0, 4] and found.status == "completed"
+    assert found.objective == pytest.approx(landed + rest)
+    assert found.phases["fall"].objective == pytest.approx(landed)
+    assert [it.time for it in found.events] == pytest.approx([1.981])
+    assert found.end == found.phases["slide"].end
+    with pytest.raises(KeyError, match="there is no 'h'.*fall.h"):
+        found["h"]
+
+
+def test_phases_are_driven_by_a_solution_and_values(models):
+    model = fdcc.Model(models / "twostage.fdc")
+    solution = model.solve()
+    driven = model.simulate(u=solution)
+    assert driven["coast.h"][-1] == pytest.approx(solution["coast.h"][-1], rel=1e-2)
+    with pytest.raises(ValueError, match="each phase has controls of its own"):
+        model.simulate(u={"thrust": [1]})
+    with pytest.raises(ValueError, match="phases have times of their own"):
+        model.simulate(t=[0, 1])
+
+
+def test_unknowns_of_a_solution_hold_in_phases_unless_told_otherwise():
+    model = fdcc.compile(
+        """free k in [0, 5] guess 1
+        phase a { time t in [0, 1]  state x start 1  dynamics { x' = -k }  end x == 0 }
+        phase b { time t in [1, 2]  state x  dynamics { x' = k } }
+        link a -> b { same }  minimize b.x(end)^2"""
+    )
+    solution = model.solve()
+    assert model.simulate(u=solution)["a.x"][-1] == pytest.approx(0, abs=1e-9)
+    assert model.simulate(u=solution, k=3)["a.x"][-1] == pytest.approx(-2)

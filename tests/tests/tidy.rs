@@ -80,7 +80,15 @@ const FOREIGN: &[(&str, &[&str])] = &[
     ("clarabel", &["runtime/src/nlp/convex/clarabel.rs"]),
     ("amd", &["runtime/src/linalg/sparse_ldl/tree.rs"]),
     ("miette", &["cli/src/drawing/render.rs"]),
-    ("plotters", &["cli/src/page/svg.rs", "cli/src/page/cells.rs"]),
+    (
+        "plotters",
+        &[
+            "cli/src/page/svg.rs",
+            "cli/src/page/cells.rs",
+            "cli/src/page/maps.rs",
+            "cli/src/page/colours.rs",
+        ],
+    ),
     ("svg2pdf", &["cli/src/page/pdf.rs"]),
     ("dejavu", &["cli/src/page/pdf.rs"]),
     ("similar", &["cli/src/drawing/difference.rs"]),

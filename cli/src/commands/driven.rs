@@ -112,8 +112,8 @@ impl Driven {
         Ok((self.changes.apply_to_run(&adapted).map_err(Failure::Usage)?, driver))
     }
 
-    /// The model with the parameters of the solution that drives its phases, changed; the command
-    /// line has the last word.
+    /// The model with the parameters and unknowns of the solution that drives its phases, changed;
+    /// the command line has the last word.
     pub fn in_phases(&self, model: &Model) -> Result<(Model, Option<Saved>), Failure> {
         if self.warm.is_some() {
             let what = "`--warm` needs a model of one piece; `--control` takes a .sol.json, too";
@@ -126,12 +126,8 @@ impl Driven {
             return Err(Failure::Usage(what.into()));
         }
         let saved = self.control.as_deref().map(Saved::read).transpose()?;
-        let params = saved.iter().flat_map(|it| it.record().params);
-        let params: Vec<(String, f64)> = params.map(|(name, it)| (name.to_owned(), it)).collect();
-        let adapted = model.changed(|meaning| {
-            meaning.restore_params(&params);
-            Ok::<(), Failure>(())
-        })?;
+        let adapted = saved.as_ref().map(|it| model.with_values_of(&it.record()));
+        let adapted = adapted.unwrap_or_else(|| model.clone());
         Ok((self.changes.apply_to_run(&adapted).map_err(Failure::Usage)?, saved))
     }
 

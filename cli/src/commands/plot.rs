@@ -4,21 +4,23 @@ use super::report::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
 use crate::output::files;
+use crate::page::arrays::{Array, arrays};
 use crate::page::figures::{Figure, figures};
 use crate::page::plots::{Portrait, portraits};
-use crate::page::{json::Json, pdf, svg};
+use crate::page::svg::{self, Row};
+use crate::page::{json::Json, pdf};
 use clap::Args;
 use std::path::PathBuf;
 
 /// Draw signals of a solution as SVG or PDF
 #[derive(Args)]
 pub struct Plot {
-    /// The .sol.json of a solve
+    /// The .sol.json of a solve, or the .sim.json of a simulation
     #[arg(value_name = "SOLUTION")]
     solution: PathBuf,
-    /// What to draw: a state, a control, a path condition, a report, a `plot` of the model,
-    /// `costate(x)`, `multiplier(c)`, `residual(x)` or `hamiltonian`; repeatable; all states and
-    /// controls if left out
+    /// What to draw: a state, an array of them as a map of colours, a control, a path condition, a
+    /// report, a `plot` of the model, `costate(x)`, `multiplier(c)`, `impulse(c)`, `residual(x)` or
+    /// `hamiltonian`; repeatable; all states and controls if left out
     #[arg(long, value_name = "NAME")]
     signal: Vec<String>,
     /// Draw it over this signal instead of over the time
@@ -47,12 +49,16 @@ impl Plot {
         if let Some(asked) = self.asked(&portraits) {
             return self.save(ending, &svg::portrait(&document[0], &all, asked));
         }
-        let wanted = self.wanted(&all)?;
+        let arrays = arrays(&document, &all);
+        let wanted = self.wanted(&all, &arrays)?;
         let picture = match (&self.over, &wanted[..]) {
-            (None, wanted) => svg::over_time(&document[0], wanted),
-            (Some(over), [of]) => svg::over_another(&document[0], of, find(&all, over)?),
+            (None, wanted) => svg::over_time(&document[0], &all, wanted),
+            (Some(over), [Row::Curves(of)]) => {
+                svg::over_another(&document[0], of, find(&all, over)?)
+            }
             (Some(_), _) => {
-                return Err(Failure::Usage("`--over` is for one `--signal`".into()));
+                let why = "`--over` is for one `--signal`, and not for an array of them";
+                return Err(Failure::Usage(why.into()));
             }
         };
         self.save(ending, &picture)
@@ -71,18 +77,25 @@ impl Plot {
         portraits.iter().find(|it| self.over.is_none() && it.name == *name)
     }
 
-    fn wanted<'f>(&self, all: &'f [Figure]) -> Result<Vec<&'f Figure>, Failure> {
+    fn wanted<'f>(&self, all: &'f [Figure], arrays: &'f [Array]) -> Result<Vec<Row<'f>>, Failure> {
         if self.signal.is_empty() {
-            return Ok(all.iter().filter(|it| it.is_usual()).collect());
+            return Ok(svg::usual(all, arrays));
         }
-        self.signal.iter().map(|name| find(all, name)).collect()
+        let row = |name: &String| match arrays.iter().find(|it| it.signal() == *name) {
+            Some(array) => Ok(Row::Map(array)),
+            None => find(all, name).map(Row::Curves).map_err(|_| none(name, all, arrays)),
+        };
+        self.signal.iter().map(row).collect()
     }
+}
+
+fn none(name: &str, all: &[Figure], arrays: &[Array]) -> Failure {
+    let known = arrays.iter().map(Array::signal).chain(all.iter().map(Figure::signal));
+    let known: Vec<String> = known.collect();
+    Failure::Usage(format!("no signal `{name}`; there are: {}", known.join(", ")))
 }
 
 fn find<'f>(all: &'f [Figure], name: &str) -> Result<&'f Figure, Failure> {
     let found = all.iter().find(|figure| figure.signal() == name);
-    found.ok_or_else(|| {
-        let known: Vec<String> = all.iter().map(Figure::signal).collect();
-        Failure::Usage(format!("no signal `{name}`; there are: {}", known.join(", ")))
-    })
+    found.ok_or_else(|| none(name, all, &[]))
 }

@@ -14,7 +14,7 @@ const MOST: usize = 8;
 /// Write a page of solutions, side by side
 #[derive(Args)]
 pub struct Report {
-    /// The .sol.json of one or several solves
+    /// The .sol.json of one or several solves, or documents of other runs, such as a .sim.json
     #[arg(value_name = "SOLUTION", required = true)]
     solutions: Vec<PathBuf>,
     /// Where the page is written

@@ -5,7 +5,6 @@ use super::options::usage;
 use super::solver::wrote;
 use crate::exit::Exit;
 use crate::failure::Failure;
-use crate::output::saved::Saved;
 use crate::output::simulation::SimulationDocument;
 use crate::output::simulation_of_phases::PhasesDocument;
 use crate::output::{self, files};
@@ -57,9 +56,8 @@ impl Simulate {
             return Err(Failure::Usage(what.into()));
         }
         let (model, saved) = self.driven.in_phases(model)?;
-        let mut record = saved.as_ref().map(Saved::record);
-        // The model has them, or others.
-        record.iter_mut().flat_map(|it| &mut it.phases).for_each(|it| it.params.clear());
+        // The model has its values, or others.
+        let record = saved.as_ref().map(|it| it.record().without_values());
         let simulated = model.simulate_phases(record.as_ref(), &self.options(&model))?;
         let exit = if simulated.is_complete() { Exit::Fine } else { Exit::NotSolved };
         Ok((Text::of_phases(&PhasesDocument::new(&simulated, &model)), exit))

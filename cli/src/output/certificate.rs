@@ -17,6 +17,9 @@ pub struct Certificate {
     pub switches: Vec<Switch>,
     /// What each control does from when to when: `min`, `max` or `free`.
     pub arcs: Named<Vec<Span>>,
+    /// The multipliers of bounds that act at one time, by the names of their conditions.
+    #[serde(skip_serializing_if = "Named::is_empty")]
+    pub impulses: Named<Impulses>,
     /// Whether nothing switches and nothing jumps, so that only the grid stands between.
     #[serde(skip)]
     is_smooth: bool,
@@ -43,6 +46,29 @@ pub struct Switch {
     pub kappa: Option<f64>,
     /// How far from grazing, as in the events of a simulation.
     pub margin: Option<f64>,
+}
+
+/// Multipliers of a bound: what the objective changes by with it at each of these times alone.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Impulses {
+    time: Vec<f64>,
+    values: Vec<f64>,
+}
+
+/// By condition, in the order in which these come first.
+fn impulses(all: &[true_optimum::Impulse]) -> Named<Impulses> {
+    let mut named: Vec<(String, Impulses)> = Vec::new();
+    for it in all {
+        if named.iter().all(|(name, _)| *name != it.condition) {
+            named.push((it.condition.clone(), Impulses::default()));
+        }
+        let own = named.iter_mut().filter(|(name, _)| *name == it.condition);
+        own.for_each(|(_, own)| {
+            own.time.push(it.time);
+            own.values.push(it.multiplier);
+        });
+    }
+    Named(named)
 }
 
 /// What a certificate speaks of.
@@ -74,6 +100,7 @@ impl Certificate {
             checks: it.checks.iter().map(check).collect(),
             switches: it.switches.iter().map(switch).collect(),
             arcs: arcs.map(|(name, of)| (name.clone(), of.iter().map(stretch).collect())).collect(),
+            impulses: impulses(&it.impulses),
             is_smooth,
         }
     }

@@ -1,16 +1,13 @@
 //! Pictures of the rows of a sweep: values over one number, or as colours over two.
 
+use super::colours::{SCALE, colour, draw_scale};
 use super::curves::range;
 use super::svg::{Area, Drawn, FINE, HELD, LIMIT, PLAN, WIDTH, canvas, chart, draw_axes, line};
 use super::sweep::Sort;
-use crate::output::number::significant;
 use plotters::prelude::*;
 
 const HEIGHT: i32 = 340;
 const RADIUS: i32 = 3 * FINE;
-/// Of the scale of colours beside a map.
-const SCALE: i32 = 120;
-const STEPS: usize = 60;
 
 /// A value over a number for each row.
 pub struct Dots {
@@ -139,50 +136,8 @@ impl Cells {
         let failed = self.cells.iter().filter(|it| !it.1.is_finite());
         let cross = LIMIT.stroke_width(2 * FINE as u32);
         chart.draw_series(failed.map(|it| Cross::new(middle(&it), RADIUS + FINE, cross)))?;
-        self.draw_scale(&scale, known)
+        draw_scale(&scale, &self.of, known, HEIGHT)
     }
-
-    /// Which colour is which value.
-    fn draw_scale(&self, area: &Area, [low, high]: [f64; 2]) -> Drawn {
-        if low > high {
-            return Ok(());
-        }
-        let font = ("sans-serif", 13 * FINE).into_font();
-        let (left, top, height) = (8 * FINE, 34 * FINE, (HEIGHT - 90) * FINE);
-        for step in 0..STEPS {
-            let part = |it: usize| top + height * it as i32 / STEPS as i32;
-            let value = high - (high - low) * (step as f64 + 0.5) / STEPS as f64;
-            let [above, below] = [part(step), part(step + 1)];
-            let style = colour(value, [low, high]).filled();
-            area.draw(&Rectangle::new([(left, above), (left + 18 * FINE, below)], style))?;
-        }
-        let text = |words: String, y: i32| area.draw(&Text::new(words, (left, y), font.clone()));
-        text(self.of.clone(), 0)?;
-        text(significant(high, 5), top - 16 * FINE)?;
-        text(significant(low, 5), top + height + 4 * FINE)
-    }
-}
-
-/// The colours of viridis at even distances: they keep their order in grey and for the colour
-/// blind.
-const COLOURS: [[f64; 3]; 5] = [
-    [68.0, 1.0, 84.0],
-    [59.0, 82.0, 139.0],
-    [33.0, 145.0, 140.0],
-    [94.0, 201.0, 98.0],
-    [253.0, 231.0, 37.0],
-];
-
-/// From dark to bright.
-fn colour(value: f64, [low, high]: [f64; 2]) -> RGBColor {
-    let part = if high > low { (value - low) / (high - low) } else { 0.5 };
-    let place = part * (COLOURS.len() - 1) as f64;
-    let before = (place as usize).min(COLOURS.len() - 2);
-    let [red, green, blue] = [0, 1, 2].map(|at| {
-        let [a, b] = [before, before + 1].map(|it| COLOURS[it][at]);
-        (a + (b - a) * (place - before as f64)).round() as u8
-    });
-    RGBColor(red, green, blue)
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! What the scripts of a page draw: everything but the numbers of curves.
 
+use super::arrays::{Array, arrays};
+use super::colours::COLOURS;
 use super::figures::{Figure, figures, parts};
 use super::json::Json;
 use super::plots::{Portrait, portraits};
+use super::runs::events;
 use super::strips::{Strip, strips};
 use super::units::{Unit, of_time};
 use serde::Serialize;
@@ -16,6 +19,10 @@ pub struct Drawing {
     /// The first and the last time, as shown.
     range: [f64; 2],
     pub figures: Vec<Figure>,
+    /// What is drawn as colours.
+    pub arrays: Vec<Array>,
+    /// Those, as red, green and blue.
+    colours: [[u8; 3]; 5],
     /// The pictures that the model asks for.
     pub portraits: Vec<Portrait>,
     /// For each document.
@@ -47,6 +54,8 @@ impl Drawing {
         let figures = figures(documents);
         Drawing {
             portraits: portraits(documents, &figures),
+            arrays: arrays(documents, &figures),
+            colours: COLOURS,
             names: names.iter().map(|it| (*it).to_owned()).collect(),
             time: Time { name: "t", label, unit, si },
             range: times(documents).map(|time| time / si),
@@ -85,11 +94,12 @@ fn marks(document: &Json) -> Vec<Moment> {
         Some(Moment { time, what: name.clone() })
     };
     let phases = document.at("phases").pairs().iter().skip(1).filter_map(phase);
-    let event = |it: &Json| {
+    let event = |(_, it): &(&str, &Json)| {
         let what = format!("{}: {}", it.at("surface").text(), it.at("kind").text());
         Some(Moment { time: it.at("time").number()?, what: what.replace('_', " ") })
     };
-    let events = document.at("events").list().iter().filter_map(event);
+    let events = events(document);
+    let events = events.iter().filter_map(event);
     let jumps = document.at("jumps").list().iter().filter_map(jump);
     jumps.chain(events).chain(phases).chain(switches.iter().filter_map(switch)).collect()
 }

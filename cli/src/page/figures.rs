@@ -3,7 +3,7 @@
 
 use super::json::{Json, NULL};
 use super::units::{Unit, of_condition, of_time, of_value, per};
-use super::{measured, plots, sizes};
+use super::{impulses, measured, plots, sizes};
 use serde::Serialize;
 
 /// A plot over time.
@@ -36,6 +36,7 @@ impl Figure {
             COSTATES => format!("costate({})", self.name),
             MULTIPLIERS => format!("multiplier({})", self.name),
             RESIDUALS => format!("residual({})", self.name),
+            IMPULSES => format!("impulse({})", self.name),
             HAMILTONIAN => "hamiltonian".into(),
             _ => self.name.clone(),
         }
@@ -94,6 +95,11 @@ impl Kind {
     pub fn is_measured(self) -> bool {
         matches!(self, Kind::Points | Kind::Stems)
     }
+
+    /// Whether it is of what a document is about: no replay and no measurement.
+    pub fn is_plan(self) -> bool {
+        matches!(self, Kind::Line | Kind::Steps)
+    }
 }
 
 /// A value that must not be passed, in SI.
@@ -125,17 +131,18 @@ const GROUPS: &[Group] = &[
 ];
 pub const STATES: &str = "States";
 pub const CONTROLS: &str = "Controls";
-const PATH: &str = "Path conditions";
+pub const PATH: &str = "Path conditions";
 pub const REPORTED: &str = "Reported";
 pub const COSTATES: &str = "Costates";
-const MULTIPLIERS: &str = "Multipliers of path conditions";
+pub const MULTIPLIERS: &str = "Multipliers of path conditions";
+pub const IMPULSES: &str = "Multipliers of bounds at one time";
 pub const HAMILTONIAN: &str = "Hamiltonian";
 pub const RESIDUALS: &str = "Residuals";
 const WORK: &str = "Each step of the loop";
 
 /// Whether a group stands behind what was measured.
 pub fn is_drawn_late(group: &str) -> bool {
-    [COSTATES, MULTIPLIERS, HAMILTONIAN, WORK].contains(&group)
+    [COSTATES, MULTIPLIERS, IMPULSES, HAMILTONIAN, WORK].contains(&group)
 }
 
 /// A document, or a phase of one: what has signals over a time of its own.
@@ -179,6 +186,7 @@ pub fn figures(documents: &[Json]) -> Vec<Figure> {
             }
         }
     }
+    impulses::add(documents, &mut figures);
     for part in parts.iter().filter(|part| !part.json.at("hamiltonian").is_absent()) {
         let unit = per(&of_value(part.document, "objective"), &of_time(part.document));
         let measures = si(part, "objective");

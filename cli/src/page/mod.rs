@@ -3,16 +3,21 @@
 //!
 //! The page is made from the JSON document of the solve and holds it, with fewer digits.
 
+pub mod arrays;
 mod cells;
+mod colours;
 mod curves;
 mod drawing;
 mod estimates;
 pub mod figures;
 mod gradient;
 mod headline;
+mod impulses;
 pub mod json;
 mod located;
+mod maps;
 mod measured;
+mod moves;
 pub mod notebook;
 pub mod pdf;
 pub mod plots;
@@ -43,6 +48,7 @@ const SCRIPT: &str = concat!(
     include_str!("assets/data.js"),
     include_str!("assets/plot.js"),
     include_str!("assets/strips.js"),
+    include_str!("assets/map.js"),
     include_str!("assets/portrait.js"),
     include_str!("assets/convergence.js"),
     include_str!("assets/main.js")

@@ -1,7 +1,8 @@
 //! A solution as a part of a page of others, such as a notebook: without scripts, which are removed
 //! there.
 
-use super::figures::{Figure, figures};
+use super::arrays::arrays;
+use super::figures::figures;
 use super::headline::{claims, mark, title};
 use super::json::Json;
 use super::tags::escape;
@@ -19,8 +20,9 @@ pub fn fragment(document: &str) -> String {
     let document: [Json; 1] = [serde_json::from_str(document).expect("we have just written it")];
     let [own] = &document;
     let all = figures(&document);
-    let shown: Vec<&Figure> = all.iter().filter(|it| it.is_usual()).collect();
-    let picture = if shown.is_empty() { String::new() } else { svg::over_time(own, &shown) };
+    let arrays = arrays(&document, &all);
+    let shown = svg::usual(&all, &arrays);
+    let picture = if shown.is_empty() { String::new() } else { svg::over_time(own, &all, &shown) };
     format!(
         "<div class=\"fdcc\">\n<style>{STYLE}</style>\n<h3 class=\"{}\">{}: {}</h3>\n<ul>\n\
          {}</ul>\n{}{picture}</div>\n",

@@ -41,7 +41,12 @@ impl Run {
         let happened = match self {
             Run::Gradient => return gradient::title(document),
             Run::Verification => return verified::title(document),
-            Run::Simulation => plural(events(document).len(), "event"),
+            Run::Simulation => {
+                let phases = document.at("phases").pairs().len();
+                let phases = (phases > 0).then(|| plural(phases, "phase"));
+                let events = plural(events(document).len(), "event");
+                phases.into_iter().chain([events]).collect::<Vec<_>>().join(", ")
+            }
             Run::ClosedLoop => plural(statuses(document).len(), "step"),
         };
         let what = if self == Run::Simulation { "Simulated" } else { "In closed loop" };
@@ -119,12 +124,20 @@ impl Run {
     fn early(self, document: &Json) -> Option<String> {
         let key = if self == Run::Simulation { "status" } else { "ended" };
         let how = document.at(key).text();
-        (how != "completed").then(|| how.replace('_', " "))
+        // The last phase is the one that does not reach its last time.
+        let phase = document.at("phases").pairs().last();
+        let phase = phase.map(|(name, _)| format!(" in phase {name}")).unwrap_or_default();
+        (how != "completed").then(|| how.replace('_', " ") + &phase)
     }
 }
 
-fn events(document: &Json) -> &[Json] {
-    document.at("events").list()
+/// What happened, with the phase in which it did; no phase in a model of one piece.
+pub fn events(document: &Json) -> Vec<(&str, &Json)> {
+    let phases = document.at("phases").pairs().iter().map(|(name, it)| (name.as_str(), it));
+    let parts = [("", document)].into_iter().chain(phases);
+    parts
+        .flat_map(|(phase, it)| it.at("events").list().iter().map(move |event| (phase, event)))
+        .collect()
 }
 
 fn statuses(document: &Json) -> Vec<&str> {
@@ -184,17 +197,22 @@ pub fn tables(document: &Json) -> String {
 
 /// When what happened, and how far from grazing.
 fn table_of_events(document: &Json) -> String {
-    let row = |it: &Json| {
+    let all = events(document);
+    let has_phases = all.iter().any(|(phase, _)| !phase.is_empty());
+    let row = |(phase, it): &(&str, &Json)| {
         let number = |key: &str| it.at(key).number().unwrap_or(f64::NAN);
-        vec![
+        let phase = has_phases.then(|| Cell::text(*phase));
+        let own = [
             Cell::text(it.at("surface").text()),
             Cell::text(it.at("kind").text().replace('_', " ")),
             Cell::Number(of_time(document).value(number("time"), 10)),
             Cell::Number(significant(number("margin"), 4)),
-        ]
+        ];
+        phase.into_iter().chain(own).collect()
     };
-    let rows: Vec<_> = events(document).iter().map(row).collect();
-    table("Events", &["surface", "what happens", "time", "margin"], &rows)
+    let rows: Vec<_> = all.iter().map(row).collect();
+    let head = ["phase", "surface", "what happens", "time", "margin"];
+    table("Events", if has_phases { &head } else { &head[1..] }, &rows)
 }
 
 #[cfg(test)]

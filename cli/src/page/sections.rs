@@ -1,5 +1,6 @@
 //! The pictures of a page: an empty place for each, with its caption.
 
+use super::arrays::Array;
 use super::drawing::Drawing;
 use super::figures::{COSTATES, Figure, HAMILTONIAN, Kind, RESIDUALS, STATES};
 use super::json::Json;
@@ -46,7 +47,15 @@ pub fn pictures(drawing: &Drawing) -> String {
         if group[0].group == PLOTS {
             continue;
         }
-        let figures = group.iter().enumerate().map(|(at, figure)| time_figure(figure, first + at));
+        let figures = group.iter().enumerate().map(|(at, figure)| {
+            let place = first + at;
+            let mut arrays = drawing.arrays.iter().filter(|it| it.figures.contains(&place));
+            match arrays.next() {
+                None => time_figure(figure, place),
+                Some(array) if array.figures[0] == place => maps(drawing, &array.figures),
+                Some(_) => String::new(),
+            }
+        });
         let figures = format!("<div class=\"plots\">\n{}</div>\n", figures.collect::<String>());
         sections += &section(heading(group[0].group), &figures);
         if group[0].group == STATES {
@@ -102,6 +111,34 @@ fn time_figure(figure: &Figure, at: usize) -> String {
          <div class=\"plot\" data-figure=\"{at}\"></div></figure>\n",
         escape(&figure.name),
         legend(figure)
+    )
+}
+
+/// An array as a map of colours, one for each document, and below it a plot of each component.
+fn maps(drawing: &Drawing, components: &[usize]) -> String {
+    let own = drawing.arrays.iter().enumerate().filter(|it| it.1.figures == components);
+    let map = |(at, array): (usize, &Array)| {
+        let of = &drawing.names[array.of];
+        let of = if drawing.names.len() == 1 { "" } else { of };
+        format!(
+            "<figure class=\"wide\"><figcaption>{} <span class=\"unit\">{}</span>{}\
+             <output></output></figcaption>\n<div class=\"plot\" data-map=\"{at}\"></div>\
+             </figure>\n",
+            escape(&array.name),
+            escape(of),
+            array.scale()
+        )
+    };
+    let each = |at: &usize| {
+        let figure = time_figure(&drawing.figures[*at], *at);
+        figure.replace("class=\"plot\" data-figure", "data-later")
+    };
+    format!(
+        "{}<details class=\"each\"><summary>each of the {}</summary>\n<div class=\"plots\">\n{}\
+         </div></details>\n",
+        own.map(map).collect::<String>(),
+        components.len(),
+        components.iter().map(each).collect::<String>()
     )
 }
 

@@ -1,10 +1,12 @@
 //! Plots of a solution for papers, as SVG: the same figures as those of its page, drawn by
 //! plotters.
 
+use super::arrays::Array;
 use super::curves::{Piece, Point, pieces, points, range, under};
 use super::drawing::times;
 use super::figures::{Curve, Figure, Kind, Limit};
 use super::json::Json;
+use super::maps;
 use super::plots::Portrait;
 use super::strips::strips;
 use super::units::{Unit, of_time};
@@ -56,12 +58,52 @@ struct Plot {
     borders: Vec<Piece>,
 }
 
-/// Figures of a document over time, one below the other.
-pub fn over_time(document: &Json, figures: &[&Figure]) -> String {
+/// What is drawn over time.
+pub enum Row<'f> {
+    Curves(&'f Figure),
+    Map(&'f Array),
+}
+
+impl Row<'_> {
+    fn height(&self) -> i32 {
+        match self {
+            Row::Curves(_) => HEIGHT,
+            Row::Map(_) => maps::HEIGHT,
+        }
+    }
+}
+
+/// Figures of a document over time, and arrays of them, one below the other.
+pub fn over_time(document: &Json, figures: &[Figure], rows: &[Row]) -> String {
     let time = of_time(document);
     let across = times(std::slice::from_ref(document)).map(|it| it / time.si);
-    let plot = |figure: &&Figure| plot_over_time(document, figure, across, &time);
-    drawn(&figures.iter().map(plot).collect::<Vec<_>>(), HEIGHT)
+    canvas([WIDTH, rows.iter().map(Row::height).sum()], |area| {
+        let mut rest = area.clone();
+        for row in rows {
+            let (own, below) = rest.split_vertically(row.height() * FINE);
+            match row {
+                Row::Curves(figure) => {
+                    plot_over_time(document, figure, across, &time).draw(&own)?
+                }
+                Row::Map(array) => {
+                    maps::draw(&own, array, (document, figures), (across, &time))?;
+                }
+            }
+            rest = below;
+        }
+        Ok(())
+    })
+}
+
+/// What is drawn where nobody says what: states and controls, arrays of them in one map.
+pub fn usual<'f>(figures: &'f [Figure], arrays: &'f [Array]) -> Vec<Row<'f>> {
+    let row =
+        |(at, figure): (usize, &'f Figure)| match arrays.iter().find(|it| it.figures.contains(&at))
+        {
+            Some(array) => (array.figures[0] == at).then_some(Row::Map(array)),
+            None => Some(Row::Curves(figure)),
+        };
+    figures.iter().enumerate().filter(|it| it.1.is_usual()).filter_map(row).collect()
 }
 
 fn plot_over_time(document: &Json, figure: &Figure, across: [f64; 2], time: &Unit) -> Plot {
@@ -72,7 +114,8 @@ fn plot_over_time(document: &Json, figure: &Figure, across: [f64; 2], time: &Uni
     let of_lines = curves.iter().flat_map(|(_, _, pieces)| pieces.iter().flatten());
     let of_points = points.iter().flat_map(|it| &it.1);
     let ends = of_points.flat_map(|it| it.bar.unwrap_or([it.value; 2]));
-    let values = of_lines.map(|it| it.1).chain(ends);
+    let zero = points.iter().any(|it| it.0 == Kind::Stems).then_some(0.0);
+    let values = of_lines.map(|it| it.1).chain(ends).chain(zero);
     let si = figure.unit.si;
     let limits: Vec<f64> = figure.limits.iter().map(|it| it.value / si).collect();
     let ends = |it: &Limit| {
@@ -95,7 +138,7 @@ type Traced = (Kind, usize, Vec<Piece>);
 
 /// One figure over another.
 pub fn over_another(document: &Json, of: &Figure, over: &Figure) -> String {
-    drawn(&[plane(document, &[of], over)], TALL)
+    drawn(&plane(document, &[of], over))
 }
 
 /// A picture that the model asks for, with its borders.
@@ -116,7 +159,7 @@ pub fn portrait(document: &Json, figures: &[Figure], asked: &Portrait) -> String
     let [[left, right], [low, high]] = plot.ranges;
     let is_inside = |(x, y): &(f64, f64)| left < *x && *x < right && low < *y && *y < high;
     plot.borders.retain(|piece| piece.iter().all(is_inside));
-    drawn(&[plot], TALL)
+    drawn(&plot)
 }
 
 /// The ranges in which one unit is as long on both axes.
@@ -168,7 +211,7 @@ fn curves(document: &Json, figure: &Figure) -> Vec<Traced> {
     figure.curves.iter().filter(|it| !it.kind.is_measured()).map(traced).collect()
 }
 
-fn titled(name: &str, unit: &Unit) -> String {
+pub(super) fn titled(name: &str, unit: &Unit) -> String {
     if unit.name.is_empty() { name.to_owned() } else { format!("{name} [{}]", unit.name) }
 }
 
@@ -180,11 +223,8 @@ fn held(document: &Json, second: f64) -> Vec<[f64; 2]> {
     spans.map(|span| [span.from / second, span.to / second]).collect()
 }
 
-fn drawn(plots: &[Plot], height: i32) -> String {
-    canvas([WIDTH, height * plots.len() as i32], |area| {
-        let rows = area.split_evenly((plots.len(), 1));
-        plots.iter().zip(&rows).try_for_each(|(plot, row)| plot.draw(row))
-    })
+fn drawn(plot: &Plot) -> String {
+    canvas([WIDTH, TALL], |area| plot.draw(area))
 }
 
 /// A picture of so many pixels.
@@ -319,7 +359,7 @@ mod tests {
         let text = r#"{"time":[0,1],"states":{"x":[0,1]},"bounds":{"x":[-1e30,1.2]}}"#;
         let document = [serde_json::from_str(text).expect("it is JSON")];
         let figures = figures(&document);
-        let svg = over_time(&document[0], &[&figures[0]]);
+        let svg = over_time(&document[0], &figures, &[Row::Curves(&figures[0])]);
         let limit = format!("#{:02X}{:02X}{:02X}", LIMIT.0, LIMIT.1, LIMIT.2);
         let height = |line: &str| {
             let points = line.split("points=\"").nth(1).expect("a line has points");

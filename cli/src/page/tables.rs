@@ -1,6 +1,8 @@
 //! The numbers of a document that no plot shows, as tables.
 
+use super::impulses::impulses;
 use super::json::Json;
+use super::moves::moves;
 use super::runs;
 use super::tags::{Cell, escape, section, table};
 use super::units::{of_condition, of_time, of_value, per};
@@ -42,7 +44,9 @@ pub fn tables(document: &Json) -> String {
     }
     [
         sensitivities(document),
+        moves(document),
         switches(document),
+        impulses(document),
         jumps(document),
         tried(document, "sequences", "Sequences of jumps"),
         tried(document, "starts", "Starts"),

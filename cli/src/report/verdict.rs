@@ -19,9 +19,22 @@ mod next;
 mod rest;
 pub mod without_value;
 
+/// More phases, or unknowns of a fit, than this are not told one by one,
+const MOST_LISTED: usize = 8;
+/// but so many of them, and how many more there are.
+const FIRST_LISTED: usize = 3;
+
 /// The size of the problem: one line, or one for each phase.
 pub fn headline(chain: &Chain) -> String {
-    chain.phases.iter().map(phase).collect()
+    let all = &chain.phases;
+    if all.len() <= MOST_LISTED {
+        return all.iter().map(phase).collect();
+    }
+    let (first, others) = all.split_at(FIRST_LISTED);
+    let last = &others[others.len() - 1].name;
+    let unknowns = plural(others.iter().map(unknowns).sum(), "unknown");
+    let first: String = first.iter().map(phase).collect();
+    format!("{first} and {} more phases up to {last}   {unknowns}\n", others.len())
 }
 
 fn phase(problem: &Problem) -> String {
@@ -52,9 +65,6 @@ fn asked(method: &Method) -> String {
 /// The verdict for people.
 pub fn verdict(solved: &Solved) -> String {
     let document = &solved.document;
-    let named = |name: &str, value: f64| format!("{name} {}", document.units.value(name, value, 9));
-    let mut result = vec![named("objective", document.objective)];
-    result.extend(document.free.0.iter().map(|(name, value)| named(name, *value)));
     let work = format!(
         "{}   optimality error {}   constraint violation {}   {:.3} s",
         plural(document.iterations, "iteration"),
@@ -64,7 +74,7 @@ pub fn verdict(solved: &Solved) -> String {
     );
     let word = if solved.is_good() { "done" } else { "stop" };
     let mut lines =
-        vec![format!(" {word}  {}", how(solved)), format!("       {}", result.join("   "))];
+        vec![format!(" {word}  {}", how(solved)), format!("       {}", found(document))];
     lines.push(format!("       {work}"));
     lines.extend(jumps::lines(&solved.solution, document));
     lines.extend(spread(&solved.solution, document));
@@ -93,6 +103,19 @@ pub fn verdict(solved: &Solved) -> String {
     lines.extend(moved.map(|(name, it)| it.line(name, &document.units)));
     lines.extend(next::line(document));
     lines.join("\n") + "\n"
+}
+
+/// The objective and the unknowns. Of a fit each has a line of its own, too: of many of them a few
+/// are told here.
+fn found(document: &Document) -> String {
+    let named = |name: &str, value: f64| format!("{name} {}", document.units.value(name, value, 9));
+    let unknowns = &document.free.0;
+    let is_folded = document.estimates.is_some() && unknowns.len() > MOST_LISTED;
+    let told = if is_folded { FIRST_LISTED } else { unknowns.len() };
+    let more = is_folded.then(|| format!("and {} more", unknowns.len() - told));
+    let first = unknowns.iter().take(told).map(|(name, value)| named(name, *value));
+    let all = [named("objective", document.objective)].into_iter().chain(first).chain(more);
+    all.collect::<Vec<_>>().join("   ")
 }
 
 /// Objectives within this, relative to their size, are told as one.

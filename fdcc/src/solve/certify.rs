@@ -54,7 +54,8 @@ pub(super) fn certificate(
         check("hamiltonian", hamiltonian(located), HAMILTONIAN),
     ];
     let switches = located.switches(model, between, replay);
-    Certificate { checks, switches, arcs: arcs(between, model, located) }
+    let impulses = Contacts::new(model, located).impulses(between.sense);
+    Certificate { checks, switches, arcs: arcs(between, model, located), impulses }
 }
 
 /// By how much replays may differ from what was planned.

@@ -28,6 +28,8 @@ def driver(u: Controls, model: "Model") -> Iterator[Any]:
     if u is None or isinstance(u, (Solution, str, PathLike)):
         with lent("u", u) as earlier:
             yield earlier
+    elif model.names["phases"]:
+        raise ValueError("each phase has controls of its own: `u` takes a solution or its path")
     else:
         yield _rows(u, model.names["controls"])
 

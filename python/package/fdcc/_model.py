@@ -223,10 +223,11 @@ class Model:
             The controls, in SI: a solution or the path of a saved one, whose parameters and
             unknowns are taken, too; an object with a column or entry for each control, each value
             held for an equal part of the time, or from the time in the entry ``t`` on, with an
-            array for a vector, whose last axis is its parts; the guess of the model if left out.
+            array for a vector, whose last axis is its parts; the guess of the model if left out. A
+            model with phases takes a solution or its path.
         t
             When states are reported, ascending and in SI; at all steps and between long ones, if
-            left out.
+            left out, and in a model with phases.
         rtol
             The relative tolerance of one step; 1e-10 if left out.
         time_limit

@@ -108,16 +108,20 @@ class Solution:
 
 
 class Simulation:
-    """A document of ``fdcc simulate --json``."""
+    """A document of ``fdcc simulate --json``, or one of its phases."""
 
-    def __init__(self, text: str) -> None:
-        self._text, self._whole = text, json.loads(text)
+    def __init__(self, text: str, phase: str | None = None) -> None:
+        self._text, whole = text, json.loads(text)
+        self._own = whole if phase is None else whole["phases"][phase]
 
-    def time(self) -> np.ndarray:
-        return _column(self._whole["time"])
+    def time(self) -> np.ndarray | None:
+        return _column(self._own["time"]) if "time" in self._own else None
 
     def states(self) -> Columns:
-        return _columns(self._whole["states"])
+        return _columns(self._own.get("states", {}))
+
+    def phases(self) -> list[tuple[str, "Simulation"]]:
+        return [(name, Simulation(self._text, name)) for name in self._own.get("phases", {})]
 
     def json(self) -> str:
         return self._text

@@ -11,6 +11,9 @@ use crate::lagrange;
 use crate::nlp::{Place, Status};
 use crate::problem::{Chain, Columns, Problem};
 
+/// A shorter phase, for the whole time, lasts for no time.
+const MOMENT: f64 = 1e-9;
+
 /// The state on both sides of a jump.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Jump {
@@ -113,8 +116,8 @@ impl Phases<'_> {
             path_multipliers: self
                 .on_intervals(&|it| &it.path_multipliers[..self.between.path_bounds.len()]),
             end_multipliers: Vec::new(),
-            // That of one phase is not that of another.
-            hamiltonian: Hamiltonian::default(),
+            // What it has to be in one phase says nothing of another: its values alone.
+            hamiltonian: Hamiltonian { values: self.hamiltonian(), ..Hamiltonian::default() },
             report: self.at_points(&|it| &it.report),
             switching: self.at_points(&|it| &it.switching),
             parameters: Vec::new(),
@@ -142,6 +145,24 @@ impl Phases<'_> {
             own.copied().collect()
         };
         (0..columns(self.phases[0]).len()).map(of).collect()
+    }
+
+    /// That of each phase on its intervals. A phase that lasts for no time, such as the touch of a
+    /// surface, is kept from becoming shorter, which its own says: it has that of the one before.
+    fn hamiltonian(&self) -> Vec<f64> {
+        let ends = |it: &Trajectory| [it.time[0], it.time[it.time.len() - 1]];
+        let duration = |[first, last]: [f64; 2]| last - first;
+        let [first, last] = [0, self.phases.len() - 1].map(|at| ends(self.phases[at]));
+        let least = MOMENT * (last[1] - first[0]);
+        let mut all: Vec<f64> = Vec::new();
+        for phase in &self.phases {
+            let (own, before) = (&phase.hamiltonian.values, all.last().copied());
+            match before.filter(|_| duration(ends(phase)) <= least) {
+                Some(before) => all.extend(own.iter().map(|_| before)),
+                None => all.extend(own),
+            }
+        }
+        all
     }
 
     /// Columns with a number for each interval.

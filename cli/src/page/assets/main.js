@@ -5,6 +5,8 @@ document.querySelectorAll("[data-strips]").forEach((element) => {
 document.querySelectorAll("[data-figure]").forEach((element) => {
   plot(page.figures[element.dataset.figure], element);
 });
+document.querySelectorAll("[data-map]").forEach(map);
+document.querySelectorAll("details.each").forEach((it) => it.addEventListener("toggle", () => unfold(it)));
 document.querySelectorAll("[data-asked]").forEach(asked);
 document.querySelectorAll("[data-convergence]").forEach(drawConvergence);
 document.querySelectorAll("[data-portrait]").forEach(portrait);

@@ -168,7 +168,8 @@ function plot(figure, element) {
   if (!tables.length) return;
   const output = element.parentElement.querySelector("output");
   const bars = curves.flatMap((curve) => curve.pieces.flatMap((piece) => (piece.bars ?? []).flat()));
-  const values = tables.flatMap((table) => table[1]).concat(bars);
+  const zero = curves.some((curve) => curve.kind === "stems") ? [0] : [];
+  const values = tables.flatMap((table) => table[1]).concat(bars, zero);
   const limits = figure.limits.map((limit) => limit.value / figure.unit.si);
   const range = rangeOf(values, limits, figure.rounding / figure.unit.si);
   element.setAttribute("role", "img");

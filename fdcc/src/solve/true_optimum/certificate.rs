@@ -22,6 +22,36 @@ pub struct Certificate {
     pub switches: Vec<Switch>,
     /// What each control does from when to when.
     pub arcs: Vec<(String, Vec<Stretch>)>,
+    /// The multipliers of bounds that act at one time, in the order of time.
+    pub impulses: Vec<Impulse>,
+}
+
+/// The multiplier of the bound of a state or a path condition at one time, where it is touched, or
+/// where an arc at it begins or ends: what the objective of the model changes by with the bound at
+/// that time alone, in units of the objective by those of the condition. On an arc the multiplier
+/// is one over time (Hartl, Sethi, Vickson, *SIAM Review* 37, 1995, section 4).
+///
+/// ```
+/// // Bryson and Denham, 1963: it touches 1/5 at 1/2, and the least effort is 4 + 12*(1 - 4*l)^2.
+/// let text = "time t in [0, 1]\nstate x start 0\nstate v start 1\ncontrol u
+/// dynamics { x' = v  v' = u }\npath top: x <= 0.2\nend x == 0\nend v == -1
+/// minimize integral(u^2)";
+/// let solution = fdcc::Model::from_text("denham", text)?.solve(&fdcc::Options::default())?;
+/// let [touch] = &solution.certificate.as_ref().expect("it is looked for").impulses[..] else {
+///     panic!("it is touched once")
+/// };
+/// assert!(touch.condition == "top" && (touch.time - 0.5).abs() < 1e-6);
+/// assert!((touch.multiplier + 96.0 * (1.0 - 4.0 * 0.2)).abs() < 1e-4);
+/// # Ok::<(), fdcc::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Impulse {
+    /// The name of the state or the path condition.
+    pub condition: String,
+    /// When it acts.
+    pub time: f64,
+    /// How large it is.
+    pub multiplier: f64,
 }
 
 /// A change of the mode of a surface.
@@ -133,6 +163,9 @@ impl Certificate {
             *name = format!("{phase}.{name}");
         }
         self.arcs.iter_mut().for_each(|(name, _)| *name = format!("{phase}.{name}"));
+        for name in self.impulses.iter_mut().map(|it| &mut it.condition) {
+            *name = format!("{phase}.{name}");
+        }
         self
     }
 
@@ -153,7 +186,9 @@ impl Certificate {
         }
         let switch = |it: Switch| Switch { surface: own(&it.surface), ..it };
         let switches = self.switches.into_iter().map(switch).collect();
-        Certificate { checks: self.checks, switches, arcs }
+        let impulse = |it: Impulse| Impulse { condition: own(&it.condition), ..it };
+        let impulses = self.impulses.into_iter().map(impulse).collect();
+        Certificate { checks: self.checks, switches, arcs, impulses }
     }
 
     /// That of two phases: the worse figure of each check.
@@ -165,6 +200,7 @@ impl Certificate {
         }
         self.switches.extend(other.switches);
         self.arcs.extend(other.arcs);
+        self.impulses.extend(other.impulses);
         self
     }
 

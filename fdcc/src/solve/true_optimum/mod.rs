@@ -20,6 +20,7 @@ mod contacts;
 mod corners;
 mod costates;
 mod hold_sensitivities;
+mod impulses;
 mod insertion;
 mod joined;
 mod joint;
@@ -48,7 +49,7 @@ mod tracks;
 mod tuning;
 
 pub(crate) use answer::Whole;
-pub use certificate::{Certificate, Check, Stretch, Switch};
+pub use certificate::{Certificate, Check, Impulse, Stretch, Switch};
 pub(crate) use contacts::Contacts;
 pub(crate) use joint::{Joint, Part};
 pub(crate) use mending::First;

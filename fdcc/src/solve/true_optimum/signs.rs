@@ -87,8 +87,7 @@ impl Contacts<'_> {
     }
 
     fn wrong_of_touch(&self, j: usize, limit: usize, arc: Arc) -> f64 {
-        let name = self.name(j, limit);
-        let kappa = self.located.link_multiplier(j, &format!("{name} reached")).unwrap_or(0.0);
+        let kappa = self.kappa_of_entry(j, limit).unwrap_or(0.0);
         self.part_at_once(j, limit, -side(arc) * kappa)
     }
 
@@ -123,7 +122,7 @@ impl Contacts<'_> {
     }
 
     /// Whether an equation at the last time reads a state that the limit reads.
-    fn is_given_in_the_end(&self, limit: usize) -> bool {
+    pub(super) fn is_given_in_the_end(&self, limit: usize) -> bool {
         let model = self.model;
         let states = self.limits.iter().filter(|it| it.state.is_some()).count();
         let read: Vec<usize> = match self.limits[limit].state {
@@ -135,7 +134,7 @@ impl Contacts<'_> {
         given.any(|state| read.contains(&state))
     }
 
-    fn name(&self, j: usize, limit: usize) -> String {
+    pub(super) fn name(&self, j: usize, limit: usize) -> String {
         self.located.chain.phases[j].path.origin(self.row(j, limit)).label.to_string()
     }
 

@@ -153,6 +153,9 @@ pub(super) mod signs {
     /// At the end of an arc a multiplier is the polynomial through its values on so many intervals;
     /// that through one less tells how uncertain it is.
     pub(crate) const POINTS: usize = 4;
+    /// A multiplier at one time that is worth less than this part of the objective's size, over the
+    /// range of its limit, is rounding.
+    pub(crate) const NO_IMPULSE: f64 = 1e-6;
 }
 
 pub(super) mod repair {

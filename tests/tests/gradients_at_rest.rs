@@ -101,3 +101,37 @@ dynamics { y' = 1 + p^2*cos(20*t) }";
     let expected = 2.0 * 200.0_f64.sin() / 20.0;
     assert!((second[0][0] - expected).abs() < 1e-6, "{second:?}, not {expected}");
 }
+
+/// Two blocks at rest, each with all the friction that it needs: their derivatives are from one
+/// side only, and shorter steps lead to other ones. That is told after a few halvings, and not
+/// after a minute of all that there are, for each side of each quantity.
+#[test]
+fn what_does_not_settle_is_not_pursued() {
+    let text = "param p = 0.308
+param q = -0.997
+param mu = 0.609
+time t in [0, 2 + p]
+state x1 start 0
+state v1 start 0
+state x2 start 0
+state v2 start 0
+surface g2 = v2
+surface r2 = v2 - v1
+dynamics {
+  x1' = v1
+  0.527 * v1' in 0.456*t + 0.324*p - 0.046*x1 + 0.1*mu*Sgn(r2)
+  x2' = v2
+  v2' in min(1.011*t, 0.91 + q) - 0.323*x2 - 0.985*Sgn(g2) - 0.1*mu*Sgn(r2)
+}
+minimize integral(x1^2) + p*v2(end)";
+    let model = Model::from_text("rest", text).expect("it is right");
+    let once = model
+        .simulate(&Controls::Guess, &Accuracy::default())
+        .expect("it can be")
+        .result
+        .counts
+        .steps;
+    let found = gradient(text, "integral(x1^2) + p*v2(end)", "p");
+    let steps = found.found.as_ref().expect("it reaches the end").found.simulation.counts.steps;
+    assert!(steps <= 80 * once, "{steps} steps, and {once} of the simulation");
+}

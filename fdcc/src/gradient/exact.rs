@@ -42,8 +42,10 @@ impl Exact {
         quantities: &[Quantity],
     ) -> Result<Exact, Box<Simulation>> {
         let found = gradient(system, controls, options, quantities)?;
-        // Of each side along steps that are as short.
-        let options = &finer(options, &found.simulation);
+        // Of each side along steps that are as short. Where even shorter ones lead to something
+        // else, nothing is trusted, and the ordinary ones do.
+        let shorter = (found.resolution <= RESOLVED).then(|| finer(options, &found.simulation));
+        let options = shorter.as_ref().unwrap_or(options);
         let is_doubtful = !found.nondifferentiabilities.is_empty();
         let sides = if is_doubtful && quantities.len() <= MOST_SIDES {
             one_sided(system, controls, options, quantities)

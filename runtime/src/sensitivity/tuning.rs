@@ -12,4 +12,7 @@ pub(super) mod resolved {
     /// So often steps are halved, and so often for the digits of what has decayed to nothing.
     pub(crate) const MOST_HALVINGS: usize = 8;
     pub(crate) const FEW_HALVINGS: usize = 4;
+    /// Behind these, derivatives that differ by more than this part of what they did before do not
+    /// settle: a method of any order is twice as exact along half the step.
+    pub(crate) const SETTLES: f64 = 0.5;
 }

@@ -14,7 +14,7 @@ pub fn lines(solution: &Solution, document: &Document) -> Vec<String> {
     let when =
         |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
     let is_better = |it: &Sequence| {
-        it.ended.is_solved && !it.is_answer && is_clearly_better(it, solution, document)
+        it.ended.is_solved && !it.jumps.is_empty() && is_clearly_better(it, solution, document)
     };
     let happened = match document.jumps.len() {
         0 if solution.sequences.iter().any(is_better) => "none".into(),

@@ -188,8 +188,10 @@ fn with_modes_from(
 fn prepared(model: &Model) -> Model {
     let mut whole = Model { smooth: false, ..between_jumps(model) };
     for at in 0..whole.surfaces.len() {
-        whole.symbols_mut().input(Symbol::Control(model.controls.len() + at));
-        whole.symbols_mut().input(Symbol::ControlAtEnd(model.controls.len() + at));
+        let at = model.controls.len() + at;
+        for symbol in [Symbol::Control, Symbol::ControlAtStart, Symbol::ControlAtEnd] {
+            whole.symbols_mut().input(symbol(at));
+        }
     }
     whole
 }

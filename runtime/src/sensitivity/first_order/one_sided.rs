@@ -32,13 +32,17 @@ pub fn one_sided(
     options: &Options,
     quantities: &[Quantity],
 ) -> Vec<[Option<f64>; 2]> {
+    // It is the same for all quantities and both sides.
+    let first = quantities.first();
+    let here = first.and_then(|quantity| Near::new(system, controls, options, quantity));
     let side = |quantity: &Quantity, sign: f64| {
+        let here = here.as_ref()?;
         let distance = sign * DISTANCE * value(system, controls, quantity).abs().max(1.0);
         let near = |part: f64| {
             let (system, controls) = perturbed(system, controls, quantity, part * distance);
             Near::new(&system, &controls, options, quantity)
         };
-        let [here, far, nearer, nearest] = [near(0.0)?, near(1.0)?, near(0.25)?, near(0.0625)?];
+        let [far, nearer, nearest] = [near(1.0)?, near(0.25)?, near(0.0625)?];
         let gap = nearest.objective - here.objective;
         let is_off = gap.abs() > OFF * nearest.terms.max(here.terms);
         if is_off && gap.abs() > APPROACHES * (far.objective - here.objective).abs() {

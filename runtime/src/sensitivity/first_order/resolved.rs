@@ -8,14 +8,15 @@
 //! ```text
 //! beside: simulate with all quantities a little different
 //! no step longer than those of the trajectory beside it: derivatives
-//! repeat: halve all steps: derivatives, until they stay the same; with the stiff method where they
-//!         do not soon, which damps what is beside the motion as fast as it is
+//! repeat: halve all steps: derivatives, until they stay the same, or no longer come to that; with
+//!         the stiff method where they do not soon, which damps what is beside the motion as fast
+//!         as it is
 //! ```
 
 use super::gradient::{Sensitivity, along_own_steps};
 use super::quantity::Quantity;
 use crate::sensitivity::tuning::resolved::{
-    BESIDE, FEW_HALVINGS, MOST_EXPLICIT, MOST_HALVINGS, TOLERANCES,
+    BESIDE, FEW_HALVINGS, MOST_EXPLICIT, MOST_HALVINGS, SETTLES, TOLERANCES,
 };
 use crate::simulate::{Controls, Integrator, Options, Piece, Simulation, Status, System, simulate};
 
@@ -29,6 +30,7 @@ pub fn gradient(
 ) -> Result<Sensitivity, Box<Simulation>> {
     let mut options = Options { paces: beside(system, controls, options), ..options.clone() };
     let mut found = along_own_steps(system, controls, &options, quantities)?;
+    let mut before = f64::INFINITY;
     for halving in 0..MOST_HALVINGS {
         if halving == MOST_EXPLICIT && options.integrator == Integrator::Automatic {
             options.integrator = Integrator::Stiff;
@@ -48,9 +50,11 @@ pub fn gradient(
         let resolution = if is_damped { forgiving } else { exact };
         found = Sensitivity { resolution, resolution_of_rests: exact, ..next };
         let left = if halving < FEW_HALVINGS { exact } else { resolution };
-        if left <= TOLERANCES * options.rtol {
+        let is_stalled = halving >= FEW_HALVINGS && left > SETTLES * before;
+        if left <= TOLERANCES * options.rtol || is_stalled {
             break;
         }
+        before = left;
     }
     Ok(found)
 }

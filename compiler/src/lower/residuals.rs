@@ -130,9 +130,17 @@ fn adds_error(model: &Model, graph: &Graph, of_time: &[u32], root: ExprId) -> bo
             return adds(a);
         }
     }
+    // The logarithm of a product is a sum.
+    let (root, is_logarithm) = match graph.as_call(root, Builtin::Log) {
+        Some(&[of]) => (of, true),
+        None => (root, false),
+    };
+    // What is 0 but for the error is so by any factor.
+    let is_factor = |id| is_weight(id) || !is_measured(id);
     match (graph.as_call(root, Builtin::Mul), graph.as_call(root, Builtin::Div)) {
-        (Some(&[a, b]), _) => is_weight(a) && adds(b) || is_weight(b) && adds(a),
-        (_, Some(&[a, b])) => is_weight(b) && adds(a),
+        (Some(&[a, b]), _) | (_, Some(&[a, b])) if is_logarithm => is_factor(a) && is_factor(b),
+        (Some(&[a, b]), _) => is_factor(a) && adds(b) || is_factor(b) && adds(a),
+        (_, Some(&[a, b])) => is_factor(b) && adds(a),
         _ => false,
     }
 }

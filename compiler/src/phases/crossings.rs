@@ -45,6 +45,8 @@ pub(super) struct Beginning {
     pub may_be_beyond: bool,
     /// Whether it begins there as it is guessed.
     pub is_guessed_beyond: bool,
+    /// Whether the function of the surface is above 0 there, where that is certain.
+    pub is_above: Option<bool>,
 }
 
 impl Beginning {
@@ -68,14 +70,19 @@ pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
                 |at: usize| if is_guess { Some(guesses[at]) } else { model.states[at].start };
             at_start(model, &mut graph, psi, &state)
         });
-        let [reach, guess] = [(known, &widest), (guess, &guessed)].map(|(psi, domain)| {
-            height(jump.direction, Tape::new(&graph, &[psi]).evaluate(domain)[0])
-        });
+        let [known, guess] = [(known, &widest), (guess, &guessed)]
+            .map(|(psi, domain)| Tape::new(&graph, &[psi]).evaluate(domain)[0]);
+        let [reach, guess] = [known, guess].map(|psi| height(jump.direction, psi));
         let has_both = super::path::has_both(&model.jumps, jump);
         Beginning {
             may_be_before: has_both || !is_below(reach.upper),
             may_be_beyond: !has_both && is_below(reach.lower),
             is_guessed_beyond: is_below(guess.upper),
+            is_above: match () {
+                () if is_below(-known.lower) => Some(true),
+                () if is_below(known.upper) => Some(false),
+                () => None,
+            },
         }
     };
     model.jumps.iter().map(&mut of).collect()

@@ -2,11 +2,14 @@
 
 use super::crossings::{Beginning, beginnings, boxed, height};
 use super::hold::{approach, rest};
+use super::path::has_both;
+use super::turns::turns;
 use crate::expressions::graph::Graph;
 use crate::expressions::interval::Tape;
 use crate::model::numbers::{Numbers, numbers};
 use crate::model::{Jump, Model, Symbol};
 use fdcc_grammar::Diagnostic;
+use fdcc_grammar::ast::Direction;
 
 /// A jump is tried so often where the model does not say how often it may happen, or says a number
 /// that is out of reach.
@@ -51,6 +54,9 @@ pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
     let numbers = numbers(model)?;
     let (most, limits, is_cut) = most(model, &numbers);
     let begins = beginnings(model, &numbers);
+    let turns: Vec<Option<bool>> =
+        model.jumps.iter().map(|jump| turns(model, &numbers, jump)).collect();
+    let sides = Sides { jumps: &model.jumps, begins: &begins, turns: &turns, most: &most };
     let may_cross =
         begins.iter().zip(&most).map(|(it, most)| it.may_be_beyond && *most > 0).collect();
     let mut found = Sequences { all: vec![Vec::new()], may_cross, is_cut, limits };
@@ -58,7 +64,8 @@ pub fn sequences(model: &Model) -> Result<Sequences, Vec<Diagnostic>> {
     while next < found.all.len() {
         let shorter = found.all[next].clone();
         for event in 0..2 * most.len() {
-            let is_allowed = may_follow(&shorter, event, &most, &begins);
+            let is_allowed =
+                may_follow(&shorter, event, &most, &begins) && sides.may_follow(&shorter, event);
             match is_allowed && shorter.len() < LONGEST && found.all.len() < MOST {
                 true => found.all.push([&shorter[..], &[event]].concat()),
                 false => found.is_cut |= is_allowed,
@@ -80,6 +87,45 @@ fn may_follow(earlier: &[usize], event: usize, most: &[usize], begins: &[Beginni
         None => {
             let is_before = begins[event].may_be_before || earlier.contains(&(event + most.len()));
             is_before && earlier.iter().filter(|it| **it == event).count() < most[event]
+        }
+    }
+}
+
+/// On which side of surfaces with jumps in both directions the state is.
+struct Sides<'m> {
+    jumps: &'m [Jump],
+    begins: &'m [Beginning],
+    turns: &'m [Option<bool>],
+    most: &'m [usize],
+}
+
+impl Sides<'_> {
+    /// Whether a jump may happen after others: the state is on the side from which it happens, or
+    /// goes there where the jump on the way may happen no more.
+    fn may_follow(&self, earlier: &[usize], event: usize) -> bool {
+        let Some(jump) = self.jumps.get(event).filter(|it| has_both(self.jumps, it)) else {
+            return true;
+        };
+        let falls = jump.direction == Direction::Falling;
+        let is_used_up = |at: usize| {
+            let other = &self.jumps[at];
+            let is_other = other.surface == jump.surface && other.direction != jump.direction;
+            !is_other || earlier.iter().filter(|it| **it == at).count() >= self.most[at]
+        };
+        let is_there = self.is_above(earlier, event).is_none_or(|is_above| is_above == falls);
+        is_there || (0..self.jumps.len()).all(is_used_up)
+    }
+
+    /// Whether the function of the surface of a jump is above 0, where that is known.
+    fn is_above(&self, earlier: &[usize], event: usize) -> Option<bool> {
+        let surface = self.jumps[event].surface;
+        let is_there = |at: &&usize| self.jumps.get(**at).is_some_and(|it| it.surface == surface);
+        match earlier.iter().rev().find(is_there) {
+            Some(last) => {
+                let falls = self.jumps[*last].direction == Direction::Falling;
+                self.turns[*last].map(|turns| falls == turns)
+            }
+            None => self.begins[event].is_above.filter(|_| earlier.is_empty()),
         }
     }
 }

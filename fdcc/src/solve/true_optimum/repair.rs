@@ -91,7 +91,8 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongAr
     for (j, phase) in located.structure.phases.iter().enumerate() {
         let (problem, outcome) = (&located.chain.phases[j], &located.outcome.phases[j]);
         let slopes = control_slopes(problem, outcome);
-        let size = located.size_of_phase(j).max(f64::MIN_POSITIVE);
+        let own = outcome.trajectory.hamiltonian.scale.max(f64::MIN_POSITIVE);
+        let size = located.size_of_phase(j).max(own);
         for (control, arc) in phase.arcs.iter().enumerate() {
             let ControlSlopes { least, largest, terms } = slopes[control];
             let wrong = match arc {
@@ -99,7 +100,7 @@ pub(crate) fn wrong_sign(between: &Problem, located: &Located) -> Option<WrongAr
                 Arc::Lower => -least.0,
                 Arc::Upper => largest.0,
             };
-            let that_matters = if terms > 0.0 { size / terms } else { 0.0 };
+            let that_matters = if terms > 0.0 { own / terms } else { 0.0 };
             let part = ranges[control].worth(wrong, that_matters) / size;
             all.push(WrongArc { phase: j, control, part });
         }

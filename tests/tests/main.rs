@@ -37,6 +37,7 @@ mod gradients_at_rest;
 mod grids;
 mod growth;
 mod higher_order;
+mod holds;
 mod hostile;
 mod jumps;
 mod jumps_in_chains;

@@ -28,6 +28,9 @@ pub enum KinkMet {
     ByJump(f64),
     /// Where it meets a surface, at this time.
     BySurface(f64),
+    /// Where jumps pile up, at this time: what they come to is extrapolated, and its derivative is
+    /// not known.
+    ByPile(f64),
     /// At its end.
     AtEnd,
     /// At no time: the parameters alone are on it, wherever the state is.

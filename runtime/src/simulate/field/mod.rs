@@ -40,6 +40,8 @@ pub(crate) struct Field<'a> {
     pub stable: f64,
     /// States that stand still.
     pub held: Vec<usize>,
+    /// How far from 0 the function of a surface may be on which the state rests.
+    pub slack: Vec<f64>,
     /// Whether kinks are passed over, because too many are met at one time.
     pub is_blind: bool,
     /// How exact states must be.
@@ -72,6 +74,7 @@ impl<'a> Field<'a> {
             departure: vec![f64::NAN; surfaces],
             stable: f64::INFINITY,
             held: Vec::new(),
+            slack: vec![0.0; surfaces],
             is_blind: false,
             tolerance: Tolerance::new(options, &system.start),
             rounding: vec![0.0; surfaces + system.kinks.outputs()],

@@ -44,6 +44,7 @@ mod jumps_in_chains;
 mod kinks;
 mod kinks_in_phases;
 mod kinks_of_optima;
+mod kinks_of_surfaces;
 mod located_fits;
 mod manual;
 mod models;

@@ -173,7 +173,7 @@ fn kink_met(
         .or_else(|| first_kink(lineariser, tape))
         .or_else(|| moved_by_pile(lineariser, tape))
         .or_else(|| reset_kink(lineariser, tape, parameters, events))
-        .or_else(|| surface_kink(lineariser, tape, events))
+        .or_else(|| surface_kink(lineariser, tape, parameters, events))
 }
 
 /// The states that quantities move before a piece, if it is an event.

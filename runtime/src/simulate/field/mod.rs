@@ -44,6 +44,8 @@ pub(crate) struct Field<'a> {
     pub slack: Vec<f64>,
     /// Whether kinks are passed over, because too many are met at one time.
     pub is_blind: bool,
+    /// The kink that is being crossed.
+    pub crossed: Option<usize>,
     /// How exact states must be.
     pub tolerance: Tolerance,
     /// What rounding makes of the terms of each surface, then of each kink.
@@ -76,6 +78,7 @@ impl<'a> Field<'a> {
             held: Vec::new(),
             slack: vec![0.0; surfaces],
             is_blind: false,
+            crossed: None,
             tolerance: Tolerance::new(options, &system.start),
             rounding: vec![0.0; surfaces + system.kinks.outputs()],
             evaluations: 0,

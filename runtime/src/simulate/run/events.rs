@@ -17,11 +17,23 @@ impl Run<'_> {
         self.record.point(self.t, &self.x);
         match condition {
             Condition::Leaves(surface) => self.leave(surface),
-            Condition::CrossesKink(kink) => self.field.cross_kink(kink),
+            Condition::CrossesKink(kink) => self.cross_kink(kink)?,
             Condition::Reaches(surface) => self.reach(surface)?,
             Condition::Parts(surface) => return Err(Status::NotHeld { surface }),
         }
         Ok(())
+    }
+
+    /// The right side goes on as it was; where the function of a surface bends that the state is
+    /// on, the mode behind the kink may be another.
+    fn cross_kink(&mut self, kink: usize) -> Result<(), Status> {
+        self.field.cross_kink(kink);
+        self.field.crossed = Some(kink);
+        let surfaces = self.surfaces_here();
+        let bends = !self.field.bends_here(self.t, &self.x, &surfaces).is_empty();
+        let settled = if bends { self.settle(surfaces) } else { Ok(()) };
+        self.field.crossed = None;
+        settled
     }
 
     /// A surface holds the state no longer.
@@ -240,8 +252,10 @@ impl Run<'_> {
         })
     }
 
-    /// Gives every surface that the state is not on the side of the state.
+    /// Gives every surface that the state is not on the side of the state, whose functions are
+    /// known once the sides of their kinks are.
     pub fn find_sides(&mut self) {
+        self.field.find_sides_of_kinks(self.t, &self.x);
         self.field.find_rounding(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         for i in 0..self.field.modes.len() {

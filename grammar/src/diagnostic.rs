@@ -165,6 +165,7 @@ codes! {
     EndlessJumps = "FDC0310", Error, "jumps that can fire without end";
     IdleJump = "FDC0311", Warning, "a jump that never acts";
     ConstantSurface = "FDC0312", Warning, "a surface that never changes sides";
+    MovingRest = "FDC0313", Warning, "a surface that leaves what rests on it behind";
     EmptyBounds = "FDC0401", Error, "bounds that leave no room";
     NoDuration = "FDC0402", Error, "a free time without lower bound";
     NoBoundary = "FDC0403", Error, "a state without start or end condition";

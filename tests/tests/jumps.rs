@@ -156,6 +156,20 @@ fn after_the_last_bounce_the_ball_lies_still() {
     assert!(height[40..].iter().all(|height| height.abs() < 1e-7), "{height:?}");
 }
 
+/// A ball that lies on the ground is kicked up: `h(end) = k/2 - g/8`, and `k = 5` is best.
+#[test]
+fn a_kick_ends_a_hold() {
+    let text = "model kick\nfree k in [0.5, 9] guess 3\ntime t in [0, 2.5]\nstate h start \
+                0.2\nstate v start 0\nsurface ground = h\nsurface clock = t - 2\n\
+                dynamics {\n  h' = v\n  v' = -9.81\n}\n\
+                jump bounce on ground falling at most 1 then hold ground { v := -0.1*v }\n\
+                jump kick on clock rising at most 1 { v := k }\n\
+                minimize 0.05*k^2 - h(end)\nmethod { scheme = midpoint  N = 20 }\n";
+    let found = solve(text, &[0, 1], &[]);
+    expect_near(found.solved.objective(), 9.81 / 8.0 - 1.25, 1e-7);
+    expect_near(found.jumps[1].time, 2.0, 1e-9);
+}
+
 /// From 0 with speed 1 to a cushion at 0.8 and back, as fast as thrust 1 allows: there it has the
 /// speed `sqrt(2.6)`, of which 0.7 are left. However it is said that nothing goes through the
 /// cushion, it says nothing new where the cushion is hit.

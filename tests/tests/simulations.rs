@@ -69,6 +69,7 @@ fn status(simulation: &Simulation) -> (&'static str, f64) {
         Status::Zeno { limit_time, .. } => ("zeno", *limit_time),
         Status::NotFinite(_) => ("not_finite", reached),
         Status::Discontinuous { .. } => ("discontinuous", reached),
+        Status::NotHeld { .. } => ("not_held", reached),
         Status::StepLimit => ("step_limit", reached),
         Status::Stopped(_) => ("stopped", reached),
     }

@@ -32,6 +32,8 @@ enum Why {
         jump: Option<String>,
         surface: String,
         limit_time: f64,
+        #[serde(skip_serializing_if = "Option::is_none")]
+        unsettled: Option<String>,
     },
     NotFinite {
         line: usize,
@@ -40,6 +42,11 @@ enum Why {
         state: Named<f64>,
     },
     Discontinuous {
+        surface: String,
+        time: f64,
+        state: Named<f64>,
+    },
+    NotHeld {
         surface: String,
         time: f64,
         state: Named<f64>,
@@ -70,12 +77,11 @@ impl Ending {
                 let surface = surface_name(surface);
                 ("not_unique", Why::NotUnique { surface, time, state, candidates })
             }
-            Status::Zeno { jump, surface, limit_time } => {
+            Status::Zeno { jump, surface, limit_time, unsettled } => {
                 let jump = jump.map(|jump| system.jumps[jump].name.clone());
-                (
-                    "zeno",
-                    Why::Zeno { jump, surface: surface_name(surface), limit_time: *limit_time },
-                )
+                let unsettled = unsettled.map(|state| system.states[state].name.clone());
+                let (surface, limit_time) = (surface_name(surface), *limit_time);
+                ("zeno", Why::Zeno { jump, surface, limit_time, unsettled })
             }
             Status::NotFinite(origin) => {
                 let (line, of) = place(system, simulation, origin, source);
@@ -84,6 +90,9 @@ impl Ending {
             Status::Discontinuous { surface } => {
                 let surface = surface_name(surface);
                 ("discontinuous", Why::Discontinuous { surface, time, state })
+            }
+            Status::NotHeld { surface } => {
+                ("not_held", Why::NotHeld { surface: surface_name(surface), time, state })
             }
             Status::StepLimit => ("step_limit", Why::StepLimit { time, state }),
             Status::Stopped(Stop::TimeLimit) => ("time_limit", Why::TimeLimit { time, state }),
@@ -99,8 +108,9 @@ impl Ending {
             Why::NotUnique { surface, time, candidates, .. } => {
                 not_unique(surface, &shown(*time, 6), candidates)
             }
-            Why::Zeno { jump, surface, limit_time } => {
-                zeno(jump.as_deref(), surface, &shown(*limit_time, 12))
+            Why::Zeno { jump, surface, limit_time, unsettled } => {
+                let time = shown(*limit_time, 12);
+                zeno([jump.as_deref(), unsettled.as_deref()], surface, &time)
             }
             Why::NotFinite { line, of, time, .. } => {
                 format!("not finite: `{of}` (line {line}) at t = {}", shown(*time, 12))
@@ -110,6 +120,14 @@ impl Ending {
                     "the switching function of `{surface}` jumps over 0 at t = {}: a surface is \
                      where it is 0; write one that is continuous there",
                     shown(*time, 12)
+                )
+            }
+            Why::NotHeld { surface, time, .. } => {
+                format!(
+                    "not held: at t = {} `{surface}` moves away from what rests on it: after `then \
+                     hold` speeds stand still; write the motion relative to the surface, whose \
+                     speed is 0 at rest",
+                    shown(*time, 6)
                 )
             }
             Why::StepLimit { .. } => {
@@ -151,15 +169,21 @@ fn not_unique(surface: &str, time: &str, candidates: &[String]) -> String {
     format!("not unique: at t = {time} on `{surface}` the state could go on {ways}")
 }
 
-fn zeno(jump: Option<&str>, surface: &str, time: &str) -> String {
-    match jump {
-        Some(jump) => {
+fn zeno([jump, unsettled]: [Option<&str>; 2], surface: &str, time: &str) -> String {
+    match (jump, unsettled) {
+        (Some(jump), None) => {
             format!(
                 "zeno: the jumps `{jump}` pile up at t = {time}; say what follows with `then hold \
                  {surface}`"
             )
         }
-        None => format!("zeno: `{surface}` is crossed infinitely often before t = {time}"),
+        (Some(jump), Some(state)) => {
+            format!(
+                "zeno: the jumps `{jump}` pile up at t = {time}, and change `{state}` infinitely \
+                 often, to no limit that can be told; end them with `at most n`"
+            )
+        }
+        (None, _) => format!("zeno: `{surface}` is crossed infinitely often before t = {time}"),
     }
 }
 

@@ -313,6 +313,14 @@ fn kink_warning(kink: &Kink, source: &SourceFile, units: &Units) -> String {
         KinkMet::BySurface(time) => {
             format!("at t = {} a surface is met on {which}: {one_side}", shown(time))
         }
+        KinkMet::ByPile(time) => {
+            format!(
+                "`{}` (line {line}) is changed by infinitely many jumps until t = {}: what its \
+                 limit depends on is not known",
+                kink.of.label,
+                shown(time)
+            )
+        }
         KinkMet::AtEnd => format!("the trajectory ends on {which}: {one_side}"),
     }
 }

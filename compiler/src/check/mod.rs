@@ -22,6 +22,7 @@ const OF_A_PHASE: &[Check] = &[
     discontinuity::sets::check,
     discontinuity::hidden_jump::check,
     dynamics::idle_jump::check,
+    dynamics::moving_rest::check,
     discontinuity::smoothness::check,
     surfaces::check,
     conditions::bounds::check,

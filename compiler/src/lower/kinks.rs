@@ -1,5 +1,5 @@
-//! Kinks of the right side that are no surfaces: of `abs`, `min`, `max`, and the knots of
-//! `piecewise`.
+//! Kinks of the right side that are no surfaces, and of the functions of surfaces: of `abs`, `min`,
+//! `max`, and the knots of `piecewise`.
 //!
 //! ```text
 //! |e| = -e, e     min(a, b) = a, b     max(a, b) = b, a     select_le(a, b, x, y) = x, y
@@ -49,14 +49,25 @@ impl Zeros {
     }
 }
 
-/// Takes the kinks out of a function whose layout has the selectors of the surfaces last.
-/// `switching` are the functions of the surfaces that stand alone; others have none.
+/// Where kinks are taken out of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Of {
+    Flow,
+    /// What has no value beyond a kink, such as `sqrt(max(x, 0))`, keeps it there: no step may end
+    /// where a surface has no value.
+    Surfaces,
+}
+
+/// Takes the kinks out of a function whose layout has the selectors of the surfaces last, and adds
+/// them to those that are known. `switching` are the functions of the surfaces that stand alone;
+/// others have none.
 pub(super) fn take_out(
     graph: &mut Graph,
     flow: &mut VectorFunction,
+    of: Of,
     switching: &[Option<ExprId>],
-) -> Kinks {
-    let mut kinks = Kinks::default();
+    kinks: &mut Kinks,
+) {
     let mut rewritten = Vec::new();
     let ends = ends_of_partial(graph, &flow.outputs);
     for (&output, origin) in flow.outputs.iter().zip(&flow.origins) {
@@ -64,8 +75,12 @@ pub(super) fn take_out(
             let Some((zero, [below, above])) = sides(graph, original, rebuilt) else {
                 return rebuilt;
             };
-            let surfaces = if ends.contains(&original) { &[][..] } else { switching };
-            match side_of(graph, zero, flow, [surfaces, switching], (&mut kinks, origin)) {
+            let is_end = ends.contains(&original);
+            if is_end && of == Of::Surfaces {
+                return rebuilt;
+            }
+            let surfaces = if is_end { &[][..] } else { switching };
+            match side_of(graph, zero, flow, [surfaces, switching], (kinks, origin)) {
                 Some(selector) => {
                     let middle = graph.number(0.0);
                     let side = graph.select_le(selector, middle, below, above);
@@ -77,7 +92,6 @@ pub(super) fn take_out(
         rewritten.extend(root);
     }
     flow.outputs = rewritten;
-    kinks
 }
 
 /// What functions are made of that have no value below 0, such as `sqrt` and `log`.

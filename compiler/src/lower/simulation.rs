@@ -3,13 +3,13 @@
 //! ```text
 //! flow      f(t, x, u, p, s), then the integrands
 //! rates     psi' = psi_t + psi_x f(t, x, u, p, s)
-//! switching psi(t, x, p)
+//! switching psi(t, x, p, s)
 //! resets    r(t, x, p), a block for each jump
 //! objective M(x(start), x(end), p)
 //! guess     of states, then controls, at (tau, p)
 //! interval  t0(p), tf(p)
 //! start     x(start)(p)
-//! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow
+//! kinks     e(t, x, u, p) of abs(e), a - b of min(a, b) and max(a, b) in the flow, then in psi
 //! fixed     e(p) of those that parameters alone move
 //! ```
 //!
@@ -21,7 +21,7 @@ use super::enclosures::{Watched, enclosures};
 use super::function::{Order, VectorFunction};
 use super::guess;
 use super::inputs::{self, Inputs, Sizes};
-use super::kinks::{Kinks, take_out};
+use super::kinks::{Kinks, Of, take_out};
 use super::objective::Hidden;
 use super::problem::{controls, parameters, states, surfaces};
 use super::{interval, origin, smoothed};
@@ -54,6 +54,7 @@ pub(crate) struct Simulated {
     layout: Layout,
     hidden: Vec<Hidden>,
     surfaces: usize,
+    kinks_of_flow: usize,
 }
 
 /// Lowers a model.
@@ -64,13 +65,14 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
     let surfaces = if purpose == Purpose::Smoothed { 0 } else { model.surfaces.len() };
     let layout = Layout { s: surfaces, ..sizes.flow() };
     let mut over = OverTime { model, graph: &mut graph, sizes: &sizes, layout, purpose, surfaces };
-    let mut flow = over.flow();
+    let (mut flow, mut switching) = (over.flow(), over.switching());
     if purpose != Purpose::Simulation {
         // The kinks of computed parameters are those of what they are computed from.
         write_out(model, over.graph, &mut flow);
+        write_out(model, over.graph, &mut switching);
     }
-    let [kinks, fixed_kinks] = over.kinks(&mut flow);
-    let (switching, path) = (over.switching(), over.path());
+    let ([kinks, fixed_kinks], kinks_of_flow) = over.kinks(&mut flow, &mut switching);
+    let path = over.path();
     let rates = over.rates(&flow, &switching);
     let mut functions = vec![
         flow,
@@ -96,7 +98,7 @@ pub(crate) fn simulation(model: &Model, purpose: Purpose) -> (Graph, Simulated) 
         &layout,
         &Watched { flow, switching, kinks, rates, path: &path, guess },
     );
-    (graph, Simulated { functions, enclosures, layout, hidden, surfaces })
+    (graph, Simulated { functions, enclosures, layout, hidden, surfaces, kinks_of_flow })
 }
 
 /// By all inputs, to the second order.
@@ -185,24 +187,30 @@ impl OverTime<'_> {
         self.function("path", model.path.iter().map(|row| (row.value, origin(&row.place))), 0..0)
     }
 
-    /// Gives the kinks of the flow selectors, but for those of parameters alone, which follow;
-    /// where a solve smooths, the knots of the kernel.
-    fn kinks(&mut self, flow: &mut VectorFunction) -> [VectorFunction; 2] {
-        let switching = self.switching().outputs;
+    /// Gives the kinks of the flow and of the surfaces selectors, but for those of parameters
+    /// alone, which follow; where a solve smooths, the knots of the kernel. How many are those of
+    /// the flow, which come first.
+    fn kinks(
+        &mut self,
+        flow: &mut VectorFunction,
+        switching: &mut VectorFunction,
+    ) -> ([VectorFunction; 2], usize) {
+        let psis = switching.outputs.clone();
         let is_alone = |at: usize| self.model.balls.iter().all(|ball| !ball.surfaces.contains(&at));
-        let switching: Vec<Option<ExprId>> = switching
-            .into_iter()
-            .enumerate()
-            .map(|(at, psi)| is_alone(at).then_some(psi))
-            .collect();
-        let Kinks { crossed, of_parameters } = take_out(self.graph, flow, &switching);
+        let psis = psis.into_iter().enumerate().map(|(at, psi)| is_alone(at).then_some(psi));
+        let (psis, mut kinks) = (psis.collect::<Vec<Option<ExprId>>>(), Kinks::default());
+        take_out(self.graph, flow, Of::Flow, &psis, &mut kinks);
+        let of_flow = kinks.crossed.values.len();
+        take_out(self.graph, switching, Of::Surfaces, &psis, &mut kinks);
+        let Kinks { crossed, of_parameters } = kinks;
         self.layout.s += crossed.values.len();
-        flow.layout = self.layout;
+        (flow.layout, switching.layout) = (self.layout, self.layout);
         let by = 0..self.layout.controls().end;
-        [
+        let functions = [
             self.over_inputs("kinks", crossed.values, crossed.origins, by),
             self.over_inputs("fixed_kinks", of_parameters.values, of_parameters.origins, 0..0),
-        ]
+        ];
+        (functions, of_flow)
     }
 
     /// `psi'` along the flow.
@@ -301,6 +309,7 @@ pub(crate) fn system(
         objective,
         guess,
         kinks,
+        kinks_of_flow: simulated.kinks_of_flow,
         fixed_kinks,
         enclosures: simulated.enclosures.clone(),
         interval_of: interval,

@@ -2,7 +2,8 @@
 //!
 //! The state that the jump resets and that moves the surface begins so that `psi' = 0`, and stands
 //! still from then on. That keeps the surface held where `psi'` depends on no other state, no
-//! control and no time; another way to hold one is not solved yet.
+//! control and no time; another way to hold one is not solved yet. A later jump that resets what
+//! `psi` or `psi'` depends on takes the state off, and it is free again.
 
 use super::MultiPhase;
 use crate::expressions::graph::derivative::derivative;
@@ -12,8 +13,10 @@ use crate::model::{Constraint, Jump, Model, Symbol};
 /// A surface that is held.
 #[derive(Clone, Copy)]
 pub(super) struct Held {
-    /// The first phase in which it is.
+    /// So many jumps are before the first phase in which it is.
     pub from: usize,
+    /// So many are before the first in which it is no longer: one of them has taken the state off.
+    pub until: usize,
     /// The state that stands still.
     pub state: usize,
     /// `psi'` over that state.
@@ -38,7 +41,19 @@ impl Held {
             .find(|&j| is_last(j) && model.jumps[sequence[j]].then_hold.is_some())?;
         let jump = &model.jumps[sequence[last]];
         let (state, approach) = rest(model, graph, jump)?;
-        Some(Held { from: last + 1, state, approach, psi: model.surfaces[jump.surface].psi })
+        let psi = model.surfaces[jump.surface].psi;
+        let reads = graph.inputs_of(&[approach, psi]);
+        let is_read = |(state, _): &(usize, ExprId)| {
+            model.input_of(Symbol::State(*state)).is_some_and(|it| reads.contains(&it))
+        };
+        let takes_off = |k: &usize| model.jumps[sequence[*k]].resets.iter().any(is_read);
+        let until = (last + 1..sequence.len()).find(takes_off).map_or(usize::MAX, |k| k + 1);
+        Some(Held { from: last + 1, until, state, approach, psi })
+    }
+
+    /// Whether it is after so many jumps.
+    fn is_after(&self, jumps: usize) -> bool {
+        (self.from..self.until).contains(&jumps)
     }
 }
 
@@ -70,7 +85,7 @@ pub(super) fn approach(model: &Model, graph: &mut Graph, psi: ExprId) -> ExprId 
 impl MultiPhase<'_> {
     /// Whether a state stands still in a phase.
     pub(super) fn is_still(&self, j: usize, state: usize) -> bool {
-        self.held.is_some_and(|held| self.count_before(j) >= held.from && state == held.state)
+        self.held.is_some_and(|held| held.is_after(self.count_before(j)) && state == held.state)
     }
 
     /// `psi'` at the start of the phase from which on the surface is held, where the state begins
@@ -89,7 +104,7 @@ impl MultiPhase<'_> {
 
     /// Whether a constraint says of a held surface what is so anyway.
     pub(super) fn is_held(&mut self, j: usize, row: &Constraint) -> bool {
-        let Some(held) = self.held.filter(|it| self.count_before(j) >= it.from) else {
+        let Some(held) = self.held.filter(|it| it.is_after(self.count_before(j))) else {
             return false;
         };
         self.is_switching_function(held.psi, row.value)

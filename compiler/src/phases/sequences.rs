@@ -116,17 +116,14 @@ impl Sides<'_> {
         is_there || (0..self.jumps.len()).all(is_used_up)
     }
 
-    /// Whether the function of the surface of a jump is above 0, where that is known.
+    /// Whether the function of the surface of a jump is above 0, where that is known: jumps on other
+    /// surfaces may move the state.
     fn is_above(&self, earlier: &[usize], event: usize) -> Option<bool> {
-        let surface = self.jumps[event].surface;
-        let is_there = |at: &&usize| self.jumps.get(**at).is_some_and(|it| it.surface == surface);
-        match earlier.iter().rev().find(is_there) {
-            Some(last) => {
-                let falls = self.jumps[*last].direction == Direction::Falling;
-                self.turns[*last].map(|turns| falls == turns)
-            }
-            None => self.begins[event].is_above.filter(|_| earlier.is_empty()),
-        }
+        let Some(last) = earlier.last() else { return self.begins[event].is_above };
+        let before = self.jumps.get(*last)?;
+        let falls = before.direction == Direction::Falling;
+        let is_there = before.surface == self.jumps[event].surface;
+        self.turns[*last].filter(|_| is_there).map(|turns| falls == turns)
     }
 }
 

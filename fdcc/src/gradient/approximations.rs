@@ -4,7 +4,7 @@
 use super::tuning::approximations::RELATIVE_WIDTH;
 use super::{Gradient, quantities};
 use fdcc_runtime::fixed_step::{self, Failure, Grid, step_through};
-use fdcc_runtime::problem::{Columns, Scheme};
+use fdcc_runtime::problem::Scheme;
 use fdcc_runtime::sensitivity::Quantity;
 use fdcc_runtime::simulate::{Simulation, System};
 
@@ -98,14 +98,15 @@ fn why(failure: &Failure) -> String {
 
 /// The largest size of each switching function along a simulation.
 fn sizes(system: &System, simulation: &Simulation) -> Vec<f64> {
-    let mut points = Columns::new(system.switching.layout().point_inputs(), simulation.time.len());
-    points.column_mut(0).copy_from_slice(&simulation.time);
-    for (at, column) in simulation.states.iter().enumerate() {
-        points.column_mut(1 + at).copy_from_slice(column);
+    let (inputs, parameters) =
+        (system.switching.layout().point_inputs(), system.parameter_values());
+    let mut largest = vec![0.0_f64; system.surfaces.len()];
+    for (row, time) in simulation.time.iter().enumerate() {
+        let states = simulation.states.iter().map(|column| column[row]);
+        let mut point: Vec<f64> = std::iter::once(*time).chain(states).collect();
+        point.resize(inputs, 0.0);
+        let psi = system.switching_at(&mut point, &parameters);
+        largest.iter_mut().zip(psi).for_each(|(most, psi)| *most = most.max(psi.abs()));
     }
-    let mut values = Columns::new(system.switching.outputs(), points.count());
-    system.switching.value(&points, &system.parameter_values(), &mut values);
-    let largest =
-        |at| values.column(at).iter().fold(0.0, |most: f64, psi: &f64| most.max(psi.abs()));
-    (0..system.surfaces.len()).map(largest).collect()
+    largest
 }

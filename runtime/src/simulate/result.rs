@@ -192,11 +192,18 @@ pub enum Status {
         surface: usize,
         /// When they accumulate.
         limit_time: f64,
+        /// A state that the jumps change for ever, so that it has no value then.
+        unsettled: Option<usize>,
     },
     /// Something has no value, or grows beyond all bounds.
     NotFinite(Origin),
     /// A switching function jumps over 0: its surface has no normal there.
     Discontinuous {
+        /// The surface.
+        surface: usize,
+    },
+    /// A surface moves away from the state that a jump lets rest on it.
+    NotHeld {
         /// The surface.
         surface: usize,
     },

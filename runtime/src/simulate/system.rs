@@ -120,9 +120,12 @@ pub struct System {
     /// Guess of states, then controls, over normalised time `[tau | p]`.
     pub guess: Arc<dyn Function>,
     /// Over the inputs of `flow`, what is 0 where `flow` has a kink that is no surface, such as
-    /// that of `abs`; the selectors behind those of the surfaces say on which side of each the
-    /// state is. Kinks inside others come first; differentiated by `t`, `x` and `u`.
+    /// that of `abs`, then where `switching` has another one; the selectors behind those of the
+    /// surfaces say on which side of each the state is. Kinks inside others come first;
+    /// differentiated by `t`, `x` and `u`.
     pub kinks: Arc<dyn Function>,
+    /// How many of them are kinks of `flow`.
+    pub kinks_of_flow: usize,
     /// Over the inputs of `flow`, what is 0 where `flow` has a kink that parameters alone move.
     pub fixed_kinks: Arc<dyn Function>,
     /// Bounds of the functions that are watched along a step.
@@ -150,6 +153,22 @@ impl System {
             let sides = zeros.iter().map(|zero| if *zero > 0.0 { 1.0 } else { -1.0 });
             point[first..].iter_mut().zip(sides).for_each(|(side, now)| *side = now);
         }
+    }
+
+    /// The functions of the surfaces at a point `[t | x | u | s]`, whose selectors become the sides
+    /// that it is on.
+    pub fn switching_at(&self, point: &mut [f64], parameters: &[f64]) -> Vec<f64> {
+        let (surfaces, kinks) = (self.surfaces.len(), self.kinks.outputs());
+        let first = point.len() - surfaces - kinks;
+        // Each pass is right for one more surface whose function has a kink on another one.
+        let passes = if kinks == 0 { 0 } else { surfaces };
+        for _ in 0..passes {
+            self.choose_sides(point, parameters);
+            let psi = value(&*self.switching, point, parameters);
+            let sides = psi.iter().map(|psi| if *psi > 0.0 { 1.0 } else { -1.0 });
+            point[first..].iter_mut().zip(sides).for_each(|(side, now)| *side = now);
+        }
+        value(&*self.switching, point, parameters)
     }
 
     /// The values of all parameters.

@@ -257,6 +257,21 @@ pub(crate) mod events {
     pub(crate) const AT_EXIT: f64 = 1e-6;
 }
 
+pub(crate) mod holding {
+    /// A surface has moved away from what rests on it by so many rounding errors: what rests is as
+    /// exact as a step, not as rounding.
+    pub(crate) const PARTED: f64 = 1e5;
+}
+
+pub(crate) mod pile {
+    /// The states after so many jumps tell two ratios of their changes.
+    pub(crate) const REMEMBERED: usize = 4;
+    /// A change of this part of a state is rounding.
+    pub(crate) const NOTHING: f64 = 1e-13;
+    /// How exact a limit has to be, as a part of the state.
+    pub(crate) const SETTLED: f64 = 1e-10;
+}
+
 pub(crate) mod staying {
     /// A look ahead, as a part of the whole time.
     pub(crate) const AHEAD: f64 = 1e-5;

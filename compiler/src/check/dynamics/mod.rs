@@ -4,4 +4,5 @@ pub(super) mod duration;
 pub(super) mod equations;
 pub(super) mod finite;
 pub(super) mod idle_jump;
+pub(super) mod moving_rest;
 pub(super) mod needs_time;

@@ -8,6 +8,7 @@ use crate::sensitivity::linearised::variational_equation::LinearTape;
 use crate::sensitivity::nondifferentiability::kink::{Kink, first_kink};
 use crate::sensitivity::nondifferentiability::objective_kink::{Direction, objective_kink};
 use crate::sensitivity::nondifferentiability::parameter_kink::parameter_kink;
+use crate::sensitivity::nondifferentiability::pile::moved_by_pile;
 use crate::sensitivity::nondifferentiability::reset_kink::{Moved, reset_kink};
 use crate::sensitivity::nondifferentiability::surface_kink::surface_kink;
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
@@ -170,8 +171,9 @@ fn kink_met(
 ) -> Option<Kink> {
     parameter_kink(lineariser, tape, parameters)
         .or_else(|| first_kink(lineariser, tape))
+        .or_else(|| moved_by_pile(lineariser, tape))
         .or_else(|| reset_kink(lineariser, tape, parameters, events))
-        .or_else(|| surface_kink(lineariser, tape, events))
+        .or_else(|| surface_kink(lineariser, tape, parameters, events))
 }
 
 /// The states that quantities move before a piece, if it is an event.

@@ -10,11 +10,12 @@
 //! ```
 //!
 //! At crossings this is (3.6) in either direction, at entries into sliding (3.5), at exits and
-//! kinks the identity, because `f- = f+` there. Transposed: `lambda- = r_x^T lambda+ + (c^T
+//! kinks of the right side the identity, because `f- = f+` there. What slides across a kink of
+//! `psi` turns there, or leaves. Transposed: `lambda- = r_x^T lambda+ + (c^T
 //! lambda+) tau_x^T`. Where a change of controls or an end of the interval moves with parameters,
 //! `tau` is its derivative.
 
-use super::linearisation::{Jacobian, Linearisation, Lineariser};
+use super::linearisation::{Jacobian, Linearisation, Lineariser, sliding};
 use super::reset::Reset;
 use crate::problem::Function;
 use crate::simulate::{Cause, Change, Instant, Regime, Tape};
@@ -54,8 +55,11 @@ impl LinearEvent {
             Cause::Start => DVector::zeros(before.state.len()),
             _ => &by_state * lineariser.rate_at_instant(tape, before),
         };
+        // On no surface, or where none is left, a kink changes no rate.
+        let is_smooth =
+            event.changes.is_empty() && sliding(&tape.regimes[before.regime]).is_empty();
         let shift = match event.cause {
-            Cause::CrossesKink(_) => DVector::zeros(arriving.len()),
+            Cause::CrossesKink(_) if is_smooth => DVector::zeros(arriving.len()),
             _ => arriving + by_time - lineariser.rate_at_instant(tape, after),
         };
         let timing = Timing::new(lineariser, tape, event);

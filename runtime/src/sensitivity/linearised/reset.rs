@@ -24,20 +24,19 @@ impl Reset {
             by_inputs: DMatrix::zeros(states, lineariser.inputs(regime)),
         };
         let mut from = event.before;
-        for change in event.changes {
-            if let EventKind::Jump(jump) = change.kind {
+        let changes = event.changes.iter().map(|it| (Some(it.kind), &it.after));
+        for (kind, next) in changes.chain([(None, event.after)]) {
+            let gap = next.time - from.time;
+            if gap > 0.0 {
+                reset.then(&straight_on(lineariser, tape, from, (gap, regime)));
+            }
+            if let Some(EventKind::Jump(jump)) = kind {
                 reset.then(&jump_slopes(lineariser, tape, from, (jump, regime)));
             }
-            if change.after.time == event.before.time {
-                from = &change.after;
+            for slopes in rest_slopes(lineariser, tape, [from, next], regime) {
+                reset.then(&slopes);
             }
-        }
-        let gap = event.after.time - event.before.time;
-        if gap > 0.0 {
-            reset.then(&straight_on(lineariser, tape, from, (gap, regime)));
-        }
-        for slopes in rest_slopes(lineariser, tape, event) {
-            reset.then(&slopes);
+            from = next;
         }
         reset
     }
@@ -81,24 +80,31 @@ fn straight_on(
     slopes
 }
 
-/// Where the state comes to rest on a surface: the Newton steps on `psi` and on `psi'` that bring
-/// it there.
-fn rest_slopes(lineariser: &Lineariser, tape: &Tape, event: &EventOnTape) -> Vec<DMatrix<f64>> {
-    let [old, new] = [event.before, event.after].map(|at| &tape.regimes[at.regime]);
+/// Where the state comes to rest on surfaces: the Newton steps on `psi` and on `psi'` that bring it
+/// there, with the `U` of a regime. What stands still on another surface is not moved.
+fn rest_slopes(
+    lineariser: &Lineariser,
+    tape: &Tape,
+    [from, next]: [&Instant; 2],
+    regime: &Regime,
+) -> Vec<DMatrix<f64>> {
+    let [old, new] = [from, next].map(|at| &tape.regimes[at.regime]);
     let comes = |i: &usize| new.modes[*i] == Mode::Held && old.modes[*i] != Mode::Held;
-    let Some(surface) = (0..new.modes.len()).find(comes) else { return Vec::new() };
-    let states = event.after.state.len();
-    let psi = jacobian(lineariser, tape, event.before, &*lineariser.system.switching).by;
-    let rates = jacobian(lineariser, tape, event.before, &*lineariser.system.rates).by;
-    let columns = 1 + states + lineariser.inputs(old);
-    let [psi, rates] = [psi, rates].map(|by| {
-        let by = lineariser.spread(by, old, event.before.time);
-        by.row(surface).columns(0, columns).into_owned()
-    });
-    let along = psi.columns(1, states).into_owned();
-    let mut pushes = rates.columns(1, states).into_owned();
-    (0..states).filter(|i| !new.held.contains(i)).for_each(|i| pushes[i] = 0.0);
-    vec![correction(&along, &psi), correction(&pushes, &rates)]
+    let slopes = |surface: usize| {
+        let columns = 1 + next.state.len() + lineariser.inputs(regime);
+        let [psi, rates] = [&lineariser.system.switching, &lineariser.system.rates].map(|of| {
+            let by = jacobian(lineariser, tape, next, &**of).by;
+            let by = lineariser.spread(by, regime, next.time);
+            by.row(surface).columns(0, columns).into_owned()
+        });
+        let normal = |by: &RowDVector<f64>, is_moved: &dyn Fn(usize) -> bool| {
+            RowDVector::from_fn(next.state.len(), |_, i| f64::from(is_moved(i)) * by[1 + i])
+        };
+        let along = normal(&psi, &|i| !old.held.contains(&i));
+        let pushes = normal(&rates, &|i| new.held.contains(&i) && !old.held.contains(&i));
+        [correction(&along, &psi), correction(&pushes, &rates)]
+    };
+    (0..new.modes.len()).filter(comes).flat_map(slopes).collect()
 }
 
 /// The derivative of `x - a c / |a|^2` where `c = 0`, given `c_(t | x | U | p)`.

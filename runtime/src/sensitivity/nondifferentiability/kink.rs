@@ -28,6 +28,9 @@ pub enum KinkMet {
     ByJump(f64),
     /// Where it meets a surface, at this time.
     BySurface(f64),
+    /// Where jumps pile up, at this time: what they come to is extrapolated, and its derivative is
+    /// not known.
+    ByPile(f64),
     /// At its end.
     AtEnd,
     /// At no time: the parameters alone are on it, wherever the state is.
@@ -48,7 +51,7 @@ pub(crate) fn first_kink(lineariser: &Lineariser, tape: &Tape) -> Option<Kink> {
         let here = Here::new(lineariser, tape, start);
         let end = Here::new(lineariser, tape, &piece.end());
         let stays = |k: &usize| here.is_on(*k) && end.is_on(*k) && !here.is_fixed(*k);
-        let kink = (0..kinks.outputs()).find(stays)?;
+        let kink = (0..lineariser.system.kinks_of_flow).find(stays)?;
         Some(Kink { of: kinks.origin(kink), met: KinkMet::Since(start.time) })
     })
 }
@@ -76,6 +79,26 @@ pub(crate) fn is_doubtful(lineariser: &Lineariser, tape: &Tape, at: usize) -> bo
     follows || here.is_along(*kink) || others.into_iter().any(is_near)
 }
 
+/// Whether a kink is met almost along itself, or together with another that moves otherwise.
+pub(crate) fn is_met_oddly(
+    lineariser: &Lineariser,
+    tape: &Tape,
+    at: &Instant,
+    kink: usize,
+) -> bool {
+    let here = Here::new(lineariser, tape, at);
+    let inputs = here.by.ncols() - here.selectors;
+    let moved = |kink: usize| here.by.view((kink, 0), (1, inputs)).into_owned();
+    let own = moved(kink).normalize();
+    let is_other = |other: usize| {
+        let by = moved(other);
+        let size = (here.by_state(other).abs() * here.state.abs())[0];
+        let is_here = here.e[other].abs() <= TOUCHING * (1.0 + size);
+        is_here && by.norm() > 0.0 && own.dot(&by.normalize()).abs() < 1.0 - TOUCHING
+    };
+    here.is_along(kink) || (0..here.e.len()).any(is_other)
+}
+
 /// The kinks at one instant.
 struct Here {
     e: DVector<f64>,
@@ -85,6 +108,8 @@ struct Here {
     rate: DVector<f64>,
     /// `psi_(x, U, p)` of the surfaces that the state slides on.
     normals: DMatrix<f64>,
+    /// How many selectors there are.
+    selectors: usize,
 }
 
 impl Here {
@@ -98,7 +123,8 @@ impl Here {
         let [by, switching] = [by, switching].map(|by| lineariser.spread(by, regime, at.time));
         let moving = 1..lineariser.layout(regime).selectors().start;
         let normals = switching.select_rows(&sliding(regime)).columns_range(moving).into_owned();
-        Here { e: values, by, state, rate: lineariser.rate_at_instant(tape, at), normals }
+        let rate = lineariser.rate_at_instant(tape, at);
+        Here { e: values, by, state, rate, normals, selectors: system.layout.s }
     }
 
     /// Neither away from it nor leaving it.

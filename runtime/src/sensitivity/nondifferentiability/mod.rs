@@ -8,6 +8,7 @@
 pub(crate) mod kink;
 pub(crate) mod objective_kink;
 pub(crate) mod parameter_kink;
+pub(crate) mod pile;
 pub(crate) mod reset_kink;
 pub(crate) mod surface_kink;
 

@@ -18,6 +18,30 @@ impl Field<'_> {
         self.selectors[place] = -self.selectors[place];
     }
 
+    /// The kinks that a point is on and at which functions of some surfaces bend: their slopes are
+    /// others on both sides. One that has just been crossed is among them, however it is rounded.
+    pub fn bends_here(&mut self, t: f64, x: &[f64], surfaces: &[usize]) -> Vec<usize> {
+        let (kinks, first) = (self.kinks(t, x), self.modes.len());
+        let is_on = |field: &Self, kink: usize| {
+            field.crossed == Some(kink)
+                || kinks.psi[kink].abs() <= ON_SURFACE * kinks.noise(kink, x)
+        };
+        let here: Vec<usize> = (0..kinks.psi.len()).filter(|kink| is_on(self, *kink)).collect();
+        let bends = |kink: &usize| {
+            let mut sides = [-1.0, 1.0].map(|side| {
+                let mut selectors = self.selectors.clone();
+                selectors[first + kink] = side;
+                self.normals_with(t, x, &selectors)
+            });
+            let [below, above] = &mut sides;
+            surfaces.iter().any(|&i| {
+                below.by_time[i] != above.by_time[i]
+                    || below.by_state.row(i) != above.by_state.row(i)
+            })
+        };
+        here.into_iter().filter(bends).collect()
+    }
+
     /// Finds the sides anew.
     pub fn find_sides_of_kinks(&mut self, t: f64, x: &[f64]) {
         let first = self.modes.len();

@@ -40,8 +40,12 @@ pub(crate) struct Field<'a> {
     pub stable: f64,
     /// States that stand still.
     pub held: Vec<usize>,
+    /// How far from 0 the function of a surface may be on which the state rests.
+    pub slack: Vec<f64>,
     /// Whether kinks are passed over, because too many are met at one time.
     pub is_blind: bool,
+    /// The kink that is being crossed.
+    pub crossed: Option<usize>,
     /// How exact states must be.
     pub tolerance: Tolerance,
     /// What rounding makes of the terms of each surface, then of each kink.
@@ -72,7 +76,9 @@ impl<'a> Field<'a> {
             departure: vec![f64::NAN; surfaces],
             stable: f64::INFINITY,
             held: Vec::new(),
+            slack: vec![0.0; surfaces],
             is_blind: false,
+            crossed: None,
             tolerance: Tolerance::new(options, &system.start),
             rounding: vec![0.0; surfaces + system.kinks.outputs()],
             evaluations: 0,

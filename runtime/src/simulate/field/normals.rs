@@ -45,16 +45,26 @@ impl Normals {
 impl Field<'_> {
     /// The functions of the surfaces with their derivatives.
     pub fn normals(&mut self, t: f64, x: &[f64]) -> Normals {
-        self.normals_of(&*self.system.switching, 0, t, x)
+        self.normals_of(&*self.system.switching, 0, (t, x, None))
+    }
+
+    /// The same with given selectors: those say on which side of its kinks each function is.
+    pub fn normals_with(&mut self, t: f64, x: &[f64], selectors: &[f64]) -> Normals {
+        self.normals_of(&*self.system.switching, 0, (t, x, Some(selectors)))
     }
 
     /// What is 0 at the kinks, with its derivatives.
     pub fn kinks(&mut self, t: f64, x: &[f64]) -> Normals {
-        self.normals_of(&*self.system.kinks, self.modes.len(), t, x)
+        self.normals_of(&*self.system.kinks, self.modes.len(), (t, x, None))
     }
 
-    fn normals_of(&mut self, function: &dyn Function, first: usize, t: f64, x: &[f64]) -> Normals {
-        self.set_point(t, x, None);
+    fn normals_of(
+        &mut self,
+        function: &dyn Function,
+        first: usize,
+        (t, x, selectors): (f64, &[f64], Option<&[f64]>),
+    ) -> Normals {
+        self.set_point(t, x, selectors);
         let controls = self.system.layout.controls();
         let (psi, matrix) = self.jacobian(function, 0..controls.end);
         let mut by_time: Vec<f64> = matrix.column(0).iter().copied().collect();

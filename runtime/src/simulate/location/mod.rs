@@ -35,12 +35,14 @@ pub(crate) enum Condition {
     Leaves(usize),
     /// The state reaches a kink of the right side.
     CrossesKink(usize),
+    /// A surface moves away from the state that rests on it.
+    Parts(usize),
 }
 
 impl From<Condition> for Cause {
     fn from(condition: Condition) -> Self {
         match condition {
-            Condition::Reaches(surface) => Cause::Reaches(surface),
+            Condition::Reaches(surface) | Condition::Parts(surface) => Cause::Reaches(surface),
             Condition::Leaves(surface) => Cause::Leaves(surface),
             Condition::CrossesKink(kink) => Cause::CrossesKink(kink),
         }
@@ -116,7 +118,8 @@ fn conditions(field: &Field) -> Vec<Condition> {
     let of = |(i, mode): (usize, &Mode)| match mode {
         Mode::Below | Mode::Above => Some(Condition::Reaches(i)),
         Mode::Sliding if is_first(i) => Some(Condition::Leaves(i)),
-        Mode::Sliding | Mode::Moving | Mode::Held => None,
+        Mode::Held => Some(Condition::Parts(i)),
+        Mode::Sliding | Mode::Moving => None,
     };
     let kinks = if field.is_blind { 0 } else { field.system.kinks.outputs() };
     field
@@ -134,6 +137,7 @@ pub(super) fn noise(field: &mut Field, condition: Condition, t: f64, x: &[f64]) 
     match condition {
         Condition::Reaches(i) => field.normals(t, x).noise(i, x),
         Condition::Leaves(_) => SELECTOR_NOISE,
+        Condition::Parts(_) => 0.0,
         Condition::CrossesKink(k) => field.kinks(t, x).noise(k, x),
     }
 }
@@ -150,6 +154,7 @@ pub(crate) fn reserve(field: &Field, surface: usize) -> f64 {
 pub(crate) fn value(field: &mut Field, condition: Condition, t: f64, x: &[f64]) -> f64 {
     match condition {
         Condition::Reaches(i) => field.modes[i].side() * field.psi(t, x)[i],
+        Condition::Parts(i) => field.slack[i] - field.psi(t, x)[i].abs(),
         Condition::Leaves(i) => {
             field.rate(t, x);
             reserve(field, i)

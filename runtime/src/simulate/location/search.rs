@@ -88,6 +88,7 @@ impl Signal<'_, '_> {
                 (&self.field.system.enclosures.kinks[k], self.field.side_of(k))
             }
             Condition::Leaves(i) => return sliding::bounds(self, part, i),
+            Condition::Parts(i) => return self.reserve_of_rest(part, i),
         };
         let [value, rate] = self.tube.bounds(self.field, self.step, part, enclosure);
         let has_no_value = value[0] > value[1];
@@ -96,6 +97,17 @@ impl Signal<'_, '_> {
         } else {
             [scaled(side, value), scaled(side, rate)]
         }
+    }
+
+    /// `slack - |psi|` and its rate.
+    fn reserve_of_rest(&mut self, part: [f64; 2], surface: usize) -> [Interval; 2] {
+        let enclosure = &self.field.system.enclosures.switching[surface];
+        let [value, rate] = self.tube.bounds(self.field, self.step, part, enclosure);
+        let largest = |[low, high]: Interval| high.max(-low);
+        let fastest = largest(rate);
+        let slack = self.field.slack[surface];
+        let least = slack - largest(value);
+        [[if least.is_nan() { f64::NEG_INFINITY } else { least }, slack], [-fastest, fastest]]
     }
 
     /// Whether the condition holds from the beginning until a part of the step, as one look at the

@@ -17,7 +17,7 @@ pub(crate) fn touches(field: &mut Field, step: &Step, until: f64) -> Vec<Touch> 
     let mut found = Vec::new();
     let selectors = field.selectors.clone();
     for condition in conditions(field) {
-        if matches!(condition, Condition::CrossesKink(_)) {
+        if matches!(condition, Condition::CrossesKink(_) | Condition::Parts(_)) {
             continue;
         }
         let limit = limit(field, step, until, condition);

@@ -8,8 +8,10 @@
 //! in which the state rests on surfaces are told.
 
 pub(crate) mod ball;
+mod bends;
 pub(crate) mod complementarity;
 mod dissipation;
+mod idle;
 
 use super::field::direction::length;
 use super::field::normals::Normals;
@@ -28,7 +30,10 @@ struct Corner<'f, 'a> {
     t: f64,
     x: &'f [f64],
     surfaces: &'f [usize],
+    /// With the sides of kinks that belong to the selectors looked at last.
     normals: Normals,
+    /// The kinks of the functions of the surfaces that the point is on.
+    bends: Vec<usize>,
     /// Where the balls stand among the surfaces.
     balls: Vec<Range<usize>>,
 }
@@ -72,17 +77,20 @@ pub(crate) fn decide(
     if surfaces.is_empty() {
         return Ok(Vec::new());
     }
+    let acts = idle::acting(field.system);
+    let (acting, idle): (Vec<usize>, Vec<usize>) = surfaces.iter().partition(|&&i| acts[i]);
     let normals = field.normals(t, x);
     field.follow_directions(t, x);
-    let balls = blocks(&field.system.balls, surfaces);
-    let mut corner = Corner { field, t, x, surfaces, normals, balls };
-    let choice = match corner.unique() {
-        Some(choice) => choice,
-        None => corner.only_combination()?,
-    };
-    choice.note_directions(field, surfaces);
+    let balls = blocks(&field.system.balls, &acting);
+    let bends = field.bends_here(t, x, &acting);
+    let mut corner = Corner { field, t, x, surfaces: &acting, normals, bends, balls };
+    let choice = corner.choose()?;
+    let beside = corner.beside(&choice, &idle);
+    choice.note_directions(field, &acting);
     let next = |(at, &surface)| Next { surface, mode: choice.modes[at], rests: choice.rests[at] };
-    Ok(surfaces.iter().enumerate().map(next).collect())
+    let mut all: Vec<Next> = acting.iter().enumerate().map(next).chain(beside).collect();
+    all.sort_by_key(|it| it.surface);
+    Ok(all)
 }
 
 fn mode(side: i8) -> Mode {
@@ -93,12 +101,28 @@ fn mode(side: i8) -> Mode {
     }
 }
 
-impl Corner<'_, '_> {
+impl<'a> Corner<'_, 'a> {
+    /// The modes that follow.
+    fn choose(&mut self) -> Result<Choice, Status> {
+        if self.surfaces.is_empty() {
+            let (modes, s, rests) = (Vec::new(), DVector::zeros(0), Vec::new());
+            return Ok(Choice { modes, s, is_solved: true, rests });
+        }
+        let choice = match self.unique() {
+            Some(choice) => choice,
+            None => self.only_combination()?,
+        };
+        // The sides of kinks are those of the motion that follows.
+        self.rates(&choice.s);
+        Ok(choice)
+    }
+
     /// Rates of the surfaces, `B`, and what counts as 0, for selectors of the surfaces.
     fn rates(&mut self, s: &DVector<f64>) -> (DVector<f64>, DMatrix<f64>, Vec<f64>) {
         let mut all = self.field.selectors.clone();
         self.surfaces.iter().zip(s.iter()).for_each(|(&i, s)| all[i] = *s);
         let (rate, by_selector) = self.field.with_selectors(self.t, self.x, &all);
+        self.go_behind_bends(&rate, &all);
         let (r, b) = surface_rates(&self.normals, &rate, &by_selector, self.surfaces);
         let size = |at: usize, i: usize| {
             let terms = self
@@ -117,6 +141,9 @@ impl Corner<'_, '_> {
 
     /// The modes, if the linearised problem has one solution on the way to that of the whole.
     fn unique(&mut self) -> Option<Choice> {
+        if !self.is_one_piece() {
+            return None;
+        }
         let mut s = DVector::zeros(self.surfaces.len());
         for _ in 0..50 {
             let (r, b, tie) = self.rates(&s);
@@ -288,16 +315,24 @@ impl Corner<'_, '_> {
 
     /// By how much the functions of the surfaces change in a short step with some modes.
     fn moved(&mut self, choice: &Choice) -> Vec<f64> {
+        let [first, last] = self.field.system.interval;
+        let (t, x, h) = (self.t, self.x, AHEAD * (last - first));
+        let psi = self.with_modes_of(choice, |field| {
+            let end = Step::take(field, t, x, h).end;
+            field.psi(t + h, &end)
+        });
+        self.surfaces.iter().map(|&i| psi[i] - self.normals.psi[i]).collect()
+    }
+
+    /// Looks at a field in some modes, and leaves it as it was.
+    fn with_modes_of<R>(&mut self, choice: &Choice, look: impl FnOnce(&mut Field<'a>) -> R) -> R {
         let before = (self.field.modes.clone(), self.field.selectors.clone());
         let of_balls = (self.field.departure.clone(), self.field.direction.clone());
         choice.begin(self.field, self.surfaces, self.t);
-        let [first, last] = self.field.system.interval;
-        let h = AHEAD * (last - first);
-        let end = Step::take(self.field, self.t, self.x, h).end;
-        let psi = self.field.psi(self.t + h, &end);
+        let seen = look(self.field);
         (self.field.modes, self.field.selectors) = before;
         (self.field.departure, self.field.direction) = of_balls;
-        self.surfaces.iter().map(|&i| psi[i] - self.normals.psi[i]).collect()
+        seen
     }
 }
 

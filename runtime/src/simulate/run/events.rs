@@ -2,7 +2,6 @@
 //! hold a surface.
 
 use super::Run;
-use crate::simulate::field::correct;
 use crate::simulate::field::direction::length;
 use crate::simulate::location::Condition;
 use crate::simulate::mode::Mode;
@@ -18,10 +17,23 @@ impl Run<'_> {
         self.record.point(self.t, &self.x);
         match condition {
             Condition::Leaves(surface) => self.leave(surface),
-            Condition::CrossesKink(kink) => self.field.cross_kink(kink),
+            Condition::CrossesKink(kink) => self.cross_kink(kink)?,
             Condition::Reaches(surface) => self.reach(surface)?,
+            Condition::Parts(surface) => return Err(Status::NotHeld { surface }),
         }
         Ok(())
+    }
+
+    /// The right side goes on as it was; where the function of a surface bends that the state is
+    /// on, the mode behind the kink may be another.
+    fn cross_kink(&mut self, kink: usize) -> Result<(), Status> {
+        self.field.cross_kink(kink);
+        self.field.crossed = Some(kink);
+        let surfaces = self.surfaces_here();
+        let bends = !self.field.bends_here(self.t, &self.x, &surfaces).is_empty();
+        let settled = if bends { self.settle(surfaces) } else { Ok(()) };
+        self.field.crossed = None;
+        settled
     }
 
     /// A surface holds the state no longer.
@@ -49,7 +61,7 @@ impl Run<'_> {
         let jump = self.field.system.jumps.iter().position(|jump| jump.surface == surface);
         // It jumps, but less than rounding shows.
         match jump.filter(|_| self.idle > MOST_AT_ONCE) {
-            Some(jump) => self.reach_zeno_point(jump, self.t),
+            Some(jump) => self.reach_zeno_point(jump, self.t, true),
             None => Ok(()),
         }
     }
@@ -107,6 +119,10 @@ impl Run<'_> {
             let next = decide(&mut self.field, self.t, &self.x, &surfaces)?;
             let crossed = next.iter().filter(|it| !it.rests);
             let jump = crossed.clone().find_map(|it| self.jump_at(it.surface, it.mode));
+            if jump.is_none() && self.rest_again(&next) {
+                surfaces = self.surfaces_here();
+                continue;
+            }
             let Some(jump) = jump else {
                 crossed.for_each(|it| self.change(it.surface, it.mode));
                 let at_rest = next.iter().filter(|it| it.rests);
@@ -116,7 +132,10 @@ impl Run<'_> {
                 self.x = x;
                 return self.end_of_crossings(known);
             };
-            self.jump(jump)?;
+            match self.rest_of_one_jump(jump) {
+                Some(held) => self.come_to_rest(jump, held, self.x.clone()),
+                None => self.jump(jump, known)?,
+            }
             surfaces = self.surfaces_here();
         }
         let jump = self
@@ -126,7 +145,7 @@ impl Run<'_> {
             .iter()
             .position(|jump| surfaces.contains(&jump.surface))
             .unwrap_or(0);
-        self.reach_zeno_point(jump, self.t)
+        self.reach_zeno_point(jump, self.t, true)
     }
 
     /// A surface that is crossed ever faster ends the simulation like jumps that accumulate; of all
@@ -140,7 +159,7 @@ impl Run<'_> {
         for surface in crossed {
             let limit = self.crossing_times[surface].limit(self.t, last - first, false);
             if let Some(limit_time) = limit {
-                return Err(Status::Zeno { jump: None, surface, limit_time });
+                return Err(Status::Zeno { jump: None, surface, limit_time, unsettled: None });
             }
         }
         Ok(())
@@ -165,8 +184,11 @@ impl Run<'_> {
     }
 
     /// Resets the state. Afterwards every surface that the state is not on has the side where the
-    /// state is.
-    fn jump(&mut self, jump: usize) -> Result<(), Status> {
+    /// state is. What has happened already at this stop, since `known` events, says nothing of
+    /// jumps that pile up in time: bodies that touch may pass an impact to and fro.
+    fn jump(&mut self, jump: usize, known: usize) -> Result<(), Status> {
+        let kind = EventKind::Jump(jump);
+        let is_again = self.record.events[known..].iter().any(|event| event.kind == kind);
         let of = &self.field.system.jumps[jump];
         let surface = of.surface;
         let margin = self.margin(surface);
@@ -179,6 +201,7 @@ impl Run<'_> {
         self.field.set_mode(surface, back);
         self.find_sides();
         self.field.find_sides_of_kinks(self.t, &self.x);
+        self.end_rests(&before);
         if self.goes_through(surface, onward) {
             self.field.set_mode(surface, onward);
         }
@@ -188,13 +211,17 @@ impl Run<'_> {
             self.hold(jump, held);
             self.record.point(self.t, &self.x);
         }
-        if is_last {
+        if is_last || is_again {
             return Ok(());
         }
         let [first, last] = self.field.system.interval;
         let is_small = self.is_small(jump, surface);
+        self.piles[jump].note(&self.x);
         match self.jump_times[jump].limit(self.t, last - first, is_small) {
-            Some(limit) => self.reach_zeno_point(jump, limit),
+            Some(limit) => {
+                let is_known = is_small && self.piles[jump].is_known();
+                self.reach_zeno_point(jump, limit, is_known)
+            }
             None => Ok(()),
         }
     }
@@ -225,8 +252,10 @@ impl Run<'_> {
         })
     }
 
-    /// Gives every surface that the state is not on the side of the state.
+    /// Gives every surface that the state is not on the side of the state, whose functions are
+    /// known once the sides of their kinks are.
     pub fn find_sides(&mut self) {
+        self.field.find_sides_of_kinks(self.t, &self.x);
         self.field.find_rounding(self.t, &self.x);
         let normals = self.field.normals(self.t, &self.x);
         for i in 0..self.field.modes.len() {
@@ -238,46 +267,6 @@ impl Run<'_> {
                 self.field.set_mode(i, mode);
             }
         }
-    }
-
-    fn reach_zeno_point(&mut self, jump: usize, limit_time: f64) -> Result<(), Status> {
-        let held = self.field.system.jumps[jump]
-            .then_hold
-            .filter(|_| limit_time < self.field.system.interval[1]);
-        let Some(held) = held else {
-            let surface = self.field.system.jumps[jump].surface;
-            return Err(Status::Zeno { jump: Some(jump), surface, limit_time });
-        };
-        let before = self.x.clone();
-        let rate = self.field.rate(self.t, &self.x);
-        let rest = limit_time - self.t;
-        self.x.iter_mut().zip(rate).for_each(|(x, rate)| *x += rest * rate);
-        self.t = limit_time;
-        self.hold(jump, held);
-        self.event_from(before, held, EventKind::EntersSliding, 0.0);
-        Ok(())
-    }
-
-    /// Brings the state to rest on a surface: the states that the jump resets and that move the
-    /// surface stand still from now on.
-    fn hold(&mut self, jump: usize, surface: usize) {
-        let resets = self.field.system.jumps[jump].resets.clone();
-        let mut still: Vec<usize> = Vec::new();
-        for _ in 0..5 {
-            let normals = self.field.normals(self.t, &self.x);
-            let slope: Vec<f64> = normals.by_state.row(surface).iter().copied().collect();
-            correct(&mut self.x, &slope, normals.psi[surface]);
-            let rate = self.field.rate(self.t, &self.x);
-            let by_state = self.field.by_state(self.t, &self.x);
-            let mut pushes: Vec<f64> =
-                (normals.by_state.row(surface) * by_state).iter().copied().collect();
-            (0..pushes.len()).filter(|i| !resets.contains(i)).for_each(|i| pushes[i] = 0.0);
-            correct(&mut self.x, &pushes, normals.rate(surface, &rate));
-            still =
-                resets.iter().copied().filter(|&i| pushes[i] != 0.0 || slope[i] != 0.0).collect();
-        }
-        self.field.held.extend(still);
-        self.field.set_mode(surface, Mode::Held);
     }
 
     /// Changes a mode and notes the event.
@@ -310,7 +299,7 @@ impl Run<'_> {
         self.event_from(self.x.clone(), surface, kind, margin);
     }
 
-    fn event_from(&mut self, before: Vec<f64>, surface: usize, kind: EventKind, margin: f64) {
+    pub fn event_from(&mut self, before: Vec<f64>, surface: usize, kind: EventKind, margin: f64) {
         let event = Event { time: self.t, surface, kind, margin, before, after: self.x.clone() };
         self.tape.change(&mut self.field, &event);
         self.record.events.push(event);
@@ -319,7 +308,7 @@ impl Run<'_> {
 
     /// The least `|d f + psi_t| / (|d| |f| + |psi_t|)` of the fields on both sides; at an exit that
     /// of the side not taken, for the other is tangent there.
-    fn margin(&mut self, surface: usize) -> f64 {
+    pub fn margin(&mut self, surface: usize) -> f64 {
         let normals = self.field.normals(self.t, &self.x);
         let mut selectors = self.field.selectors.clone();
         let own = selectors[surface];

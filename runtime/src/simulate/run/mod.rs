@@ -4,6 +4,8 @@ mod advance;
 mod arrival;
 mod between;
 mod events;
+mod holding;
+mod pile;
 mod record;
 mod recorder;
 mod staying;
@@ -16,6 +18,8 @@ use super::result::{Counts, Options, Simulation, Status};
 use super::system::{System, value};
 use super::tape::Cause;
 use advance::Pace;
+use holding::Rest;
+use pile::Pile;
 use record::Record;
 use recorder::Writer;
 use zeno::ZenoDetector;
@@ -33,6 +37,10 @@ pub(crate) struct Run<'a> {
     pub jumps: Vec<usize>,
     /// The times of the last jumps of each kind.
     pub jump_times: Vec<ZenoDetector>,
+    /// The states after the last jumps of each kind.
+    pub piles: Vec<Pile>,
+    /// How the state rests on each surface, or has rested last.
+    pub rests: Vec<Option<Rest>>,
     /// The times of the last crossings of each surface.
     pub crossing_times: Vec<ZenoDetector>,
     /// Whether the modes at the beginning are known.
@@ -80,6 +88,8 @@ impl<'a> Run<'a> {
             x: system.start.clone(),
             jumps: vec![0; system.jumps.len()],
             jump_times: vec![ZenoDetector::default(); system.jumps.len()],
+            piles: vec![Pile::default(); system.jumps.len()],
+            rests: system.surfaces.iter().map(|_| None).collect(),
             crossing_times: vec![ZenoDetector::default(); system.surfaces.len()],
             has_begun: false,
             idle: 0,

@@ -133,7 +133,7 @@ fn adds_error(model: &Model, graph: &Graph, of_time: &[u32], root: ExprId) -> bo
     // The logarithm of a product is a sum.
     let (root, is_logarithm) = match graph.as_call(root, Builtin::Log) {
         Some(&[of]) => (of, true),
-        None => (root, false),
+        _ => (root, false),
     };
     // What is 0 but for the error is so by any factor.
     let is_factor = |id| is_weight(id) || !is_measured(id);

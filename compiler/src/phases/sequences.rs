@@ -116,8 +116,8 @@ impl Sides<'_> {
         is_there || (0..self.jumps.len()).all(is_used_up)
     }
 
-    /// Whether the function of the surface of a jump is above 0, where that is known: jumps on other
-    /// surfaces may move the state.
+    /// Whether the function of the surface of a jump is above 0, where that is known: jumps on
+    /// other surfaces may move the state.
     fn is_above(&self, earlier: &[usize], event: usize) -> Option<bool> {
         let Some(last) = earlier.last() else { return self.begins[event].is_above };
         let before = self.jumps.get(*last)?;

@@ -127,16 +127,14 @@ impl PhaseOfModes {
         self.modes.contains(&Mode::Held) || self.contacts.iter().any(|it| *it != Arc::Free)
     }
 
-    /// Whether as many of the [`limits()`] are reached as controls are free: an arc of one of these
-    /// would be another condition. Limits on which controls act at once are not counted: an arc may
-    /// be what takes their place in a part of the phase.
-    pub fn are_controls_given(&self, limits: &[Limit]) -> bool {
-        let is_reached = |(arc, limit): &(&Arc, &Limit)| {
-            **arc != Arc::Free && limit.order.is_some_and(|order| order > 0)
+    /// Whether as many limits are reached as controls are free: an arc of one of these would be
+    /// another condition.
+    pub fn are_controls_given(&self) -> bool {
+        let count = |arcs: &[Arc], is_free: bool| {
+            arcs.iter().filter(|it| (**it == Arc::Free) == is_free).count()
         };
-        let reached = self.contacts.iter().zip(limits).filter(is_reached).count();
-        let free = self.arcs.iter().filter(|it| **it == Arc::Free).count();
-        reached > 0 && reached >= free
+        let reached = count(&self.contacts, false);
+        reached > 0 && reached >= count(&self.arcs, true)
     }
 
     /// Controls and limits are between their bounds.

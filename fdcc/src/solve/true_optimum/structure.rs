@@ -134,7 +134,7 @@ impl Structure {
                 arcs.clear();
                 smooth(&mut phase, roughness);
             }
-            if phase.are_controls_given(&contacts.limits) {
+            if phase.are_controls_given() {
                 arcs.clear();
             }
             let found = contacts.of_phase(j, &phase);

@@ -70,6 +70,7 @@ pub(super) fn continued(
     }
     let mut found = Found::new(problem.clone(), located.whole(problem).outcome);
     found.outcome.solution.counts = Counts::default();
+    found.outcome.solution.global = false;
     if !asks_for_truth(model, &between, &found) {
         return None;
     }

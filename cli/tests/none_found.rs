@@ -96,7 +96,7 @@ fn what_is_proved_keeps_its_words() {
             said.contains("NOT SOLVED, infeasible: proved: there is no trajectory of "),
             "{said}"
         );
-        assert!(stderr(&output).contains("this is certain"), "{solver}");
+        assert!(stderr(&output).contains("this is certain on this grid"), "{solver}");
     }
 }
 

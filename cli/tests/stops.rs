@@ -35,7 +35,7 @@ fn an_infeasible_problem_names_the_condition_and_the_controls_at_their_bounds() 
     };
     let proved = stderr(&solve("convex"));
     assert!(proved.contains("FDC0602") && proved.contains("ramp.fdc:7:"), "{proved}");
-    assert!(proved.contains("this is certain"), "{proved}");
+    assert!(proved.contains("this is certain on this grid"), "{proved}");
     let searched = solve("interior_point");
     expect_exit(&searched, 2, "interior point");
     let said = stderr(&searched);

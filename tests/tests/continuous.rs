@@ -243,3 +243,26 @@ fn what_unknowns_alone_move_touches_its_limit() {
     );
     assert_certified(&spring, low, 1e-8);
 }
+
+/// What is feasible in continuous time is not called infeasible because implicit Euler damps an
+/// oscillator, or is late by half of an interval: without a control `x = cos(10 t)`; and as the
+/// speed falls by 4 at most, from 1 to 0, `x(1)` may be 0.875.
+#[test]
+fn what_only_a_coarse_scheme_cannot_do_is_found() {
+    let free = solved(
+        "time t in [0, 2] state x start 1 state v start 0 control u in [-1, 1]
+         dynamics { x' = v  v' = -100*x + u } end x == cos(20) end v == -10*sin(20)
+         minimize integral(u^2)",
+    );
+    assert!(free.is_certified() && free.objective().abs() < 1e-12, "{}", free.objective());
+    let late = solved(
+        "time t in [0, 1] state x start 0 state v in [0, 1] start 1 control u in [-4, 4]
+         dynamics { x' = v  v' = u } end x == 0.8745 end v == 0 minimize integral(u^2)",
+    );
+    assert!(late.is_certified(), "{}", late.status_name());
+    let never = solved(
+        "time t in [0, 1] state x start 0 state v in [0, 1] start 1 control u in [-4, 4]
+         dynamics { x' = v  v' = u } end x == 0.8755 end v == 0 minimize integral(u^2)",
+    );
+    assert!(!never.status().is_solved(), "{}", never.status_name());
+}

@@ -147,3 +147,17 @@ fn a_saddle_of_a_large_number_is_left() {
     let [large, small] = [solved(&hill("N", "5e5")), solved(&hill("kN", "500"))];
     assert!(large < 11.0 && (large - small).abs() < 1e-6 * small, "{large} {small}");
 }
+
+/// A way down from a flat point that the iterations do not suffice for is one all the same.
+#[test]
+fn a_saddle_at_the_last_iteration_is_no_optimum() {
+    let text = "time t in [0, 1] state x start 0 control u in [-1, 1] dynamics { x' = u }
+                minimize 1 + x(end)^3 method { N = 50 }";
+    let model = fdcc::Model::from_text("cubic", text).expect("it has no mistakes");
+    for most in 5..16 {
+        let model = model.with_method("max_iter", f64::from(most)).expect("it is a number");
+        let found = model.solve(&fdcc::Options::default()).expect("it can be solved");
+        let is_least = found.objective().abs() < 1e-6;
+        assert!(is_least || !found.status().is_solved(), "{most}: {}", found.objective());
+    }
+}

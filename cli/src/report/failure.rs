@@ -91,8 +91,8 @@ fn infeasible(solved: &Solved, limiting: &Limiting) -> Diagnostic {
 /// A proof and a failed search want different words.
 fn advice(solution: &Solution) -> String {
     if solution.outcome.is_impossible {
-        return "this is certain, because the problem is convex: no `guess` can help. Loosen a \
-                condition, widen the bounds of a control, or allow more time."
+        return "this is certain on this grid, because the problem is convex: no `guess` can help. \
+                Loosen a condition, widen the bounds of a control, or allow more time."
             .into();
     }
     format!(

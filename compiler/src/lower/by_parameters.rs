@@ -4,6 +4,7 @@
 use super::function::{Order, VectorFunction};
 use super::inputs::{self, Sizes};
 use super::{LoweredProblem, boundary};
+use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{Expr, ExprId, Graph};
 use crate::model::{Model, Range, Symbol};
 use fdcc_runtime::problem::{Layout, Origin};
@@ -72,6 +73,20 @@ fn outputs(
 pub(crate) fn is_autonomous(lowered: &LoweredProblem) -> bool {
     let outputs = [&lowered.dynamics, &lowered.path].map(|it| it.outputs.clone()).concat();
     !lowered.graph.inputs_of(&outputs).contains(&0)
+}
+
+/// Whether right side, path constraints or ends have kinks of `abs`, `min` and `max`, or knots of
+/// pieces.
+pub(crate) fn has_kinks(lowered: &LoweredProblem) -> bool {
+    let functions = [&lowered.dynamics, &lowered.path, &lowered.boundary];
+    let outputs = functions.map(|it| it.outputs.clone()).concat();
+    let is_kink = |id: &ExprId| match lowered.graph.expr(*id) {
+        Expr::Call(builtin, _) => {
+            matches!(builtin, Builtin::Abs | Builtin::Min | Builtin::Max | Builtin::SelectLe)
+        }
+        _ => false,
+    };
+    lowered.graph.reachable(&outputs).iter().any(is_kink)
 }
 
 /// The unknown that is the last time, and nothing else: no right side, path constraint or first

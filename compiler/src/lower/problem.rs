@@ -1,7 +1,7 @@
 //! A [`Problem`]: compiled functions with the names, bounds and numbers of the model.
 
 use super::boundary::is_fixed;
-use super::by_parameters::{is_autonomous, last_time};
+use super::by_parameters::{has_kinks, is_autonomous, last_time};
 use super::objective::Hidden;
 use super::{LoweredProblem, origin};
 use crate::model::guess::fixed_by_a_row;
@@ -57,6 +57,7 @@ pub fn problem(
         interval,
         switching,
         is_autonomous: is_autonomous(lowered) && lowered.measured.is_empty(),
+        has_kinks: has_kinks(lowered),
         last_time: last_time(model, lowered).filter(|_| lowered.measured.is_empty()),
         measurements: measurements.collect(),
         report_names: model.report.iter().map(|report| report.place.name.clone()).collect(),

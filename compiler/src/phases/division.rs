@@ -190,7 +190,7 @@ impl<'m> Division<'m> {
     }
 
     /// Gives those symbols that an expression reads another meaning for which there is one.
-    fn with_symbols(
+    pub fn with_symbols(
         &mut self,
         value: ExprId,
         meaning: &mut dyn FnMut(&mut Self, Symbol) -> Option<ExprId>,

@@ -42,12 +42,13 @@ use division::{Division, divide};
 use fdcc_grammar::Diagnostic;
 use hold::Held;
 use shares::Shares;
+use std::borrow::Cow;
 
 /// What holds between the jumps of a model: the model without them, and without surfaces at which
 /// nothing else happens.
-pub fn between_jumps(model: &Model) -> Model {
+pub fn between_jumps(model: &Model) -> Cow<'_, Model> {
     if model.jumps.is_empty() {
-        return model.clone();
+        return Cow::Borrowed(model);
     }
     let used = used_surfaces(model);
     let mut between = Model { jumps: Vec::new(), ..model.clone() };
@@ -65,7 +66,7 @@ pub fn between_jumps(model: &Model) -> Model {
             *symbol = Symbol::Selector(moved(*at).unwrap_or(usize::MAX));
         }
     }
-    between
+    Cow::Owned(between)
 }
 
 /// The surfaces whose selectors something reads.
@@ -85,7 +86,7 @@ fn used_surfaces(model: &Model) -> Vec<usize> {
 /// piece if there are none.
 pub fn with_phases(model: &Model, sequence: &[usize]) -> Result<Model, Vec<Diagnostic>> {
     let jumps = Jumps::new(model)?;
-    let mut between = between_jumps(model);
+    let mut between = between_jumps(model).into_owned();
     let times = times(&mut between, &jumps.whole, sequence);
     let events: Vec<Option<usize>> = sequence.iter().copied().map(Some).collect();
     Ok(MultiPhase::new(&jumps, Division::new(&between, times), &events).into_model())

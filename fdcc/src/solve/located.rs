@@ -61,8 +61,11 @@ pub(super) fn continued(
     problem: &Problem,
     options: &Options,
 ) -> Option<Solution> {
+    let located = earlier.located.as_ref()?;
     let (between, jumps) = (between_jumps(model.meaning()), model.meaning().jumps.len());
-    let located = earlier.located.as_ref().filter(|it| it.fits(&between, jumps))?;
+    if !located.fits(&between, jumps) {
+        return None;
+    }
     // That an optimum is global was proved of other values.
     let is_divided = !model.meaning().at_times.is_empty() || !model.meaning().phases.is_empty();
     if is_divided || earlier.outcome.solution.global || options.starts > 1 {

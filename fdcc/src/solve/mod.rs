@@ -56,7 +56,7 @@ use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Linear, Method, Problem, often_called};
 use fdcc_runtime::transcribe::{conditions, unknowns};
 use found::Found;
-use tuning::search::{OTHER_KERNEL, STARTS};
+use tuning::search::{FAR_WORSE, OTHER_KERNEL, OTHER_SCHEME, STARTS};
 
 /// A model with the problem that is solved for it.
 ///
@@ -171,6 +171,7 @@ impl Compiled {
     /// theirs.
     fn solve_as_it_is(&self, options: &Options) -> Result<Solution, Error> {
         let first = self.with_other_kernel(self.solve_once(options)?, options)?;
+        let first = self.with_other_scheme(first, options)?;
         magnitudes::with_own_magnitudes(first, options)
     }
 
@@ -250,7 +251,24 @@ impl Compiled {
         }
         let other = self.model.with_method("kernel", OTHER_KERNEL)?;
         let second = other.compile_as_it_is(None)?.solve_once(options)?;
-        Ok(if second.is_certified() { second } else { first })
+        let is_taken = second.is_certified() && !is_far_worse(&second, &first);
+        Ok(if is_taken { second } else { first })
+    }
+
+    /// What a scheme of high order finds where that of our choice finds nothing that is feasible:
+    /// in continuous time there may be what implicit Euler damps, or is late for.
+    fn with_other_scheme(&self, first: Solution, options: &Options) -> Result<Solution, Error> {
+        let meaning = self.model.meaning();
+        let is_ours = !meaning.method.names_scheme && !self.model.names_its_discretisation();
+        let phases = meaning.phases.iter().map(|it| &it.model);
+        let is_smooth = [meaning].into_iter().chain(phases).all(|it| it.surfaces.is_empty());
+        let is_lost = *first.status() == Status::Infeasible;
+        if !is_ours || !is_smooth || !is_lost || (options.stop)().is_break() {
+            return Ok(first);
+        }
+        let other = self.model.with_method("scheme", OTHER_SCHEME)?;
+        let second = other.compile_as_it_is(None)?.solve_once(options)?;
+        Ok(if second.status().is_solved() { second } else { first })
     }
 
     /// Where time is divided at certain times, or at jumps.
@@ -261,6 +279,12 @@ impl Compiled {
             false => at_times::solve(meaning, between, earlier, options),
         }
     }
+}
+
+/// Whether one answer is so much worse than another that it is no answer to the same question.
+fn is_far_worse(one: &Solution, other: &Solution) -> bool {
+    let [own, its] = [one, other].map(|it| it.problem.sense * it.objective());
+    other.status().is_solved() && own - its > FAR_WORSE * own.abs().max(its.abs())
 }
 
 /// Makes the machine code that every solve needs, so that it counts as compiling.

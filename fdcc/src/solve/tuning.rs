@@ -49,6 +49,11 @@ pub(super) mod search {
     /// Where nothing is certified near the layers of the kernel of our choice: one whose layers
     /// have no edges.
     pub(crate) const OTHER_KERNEL: &str = "sqrt";
+    /// What is certified there is no answer where it is worse by this part.
+    pub(crate) const FAR_WORSE: f64 = 0.5;
+    /// Where nothing is feasible with the scheme of our choice: one of high order that damps what
+    /// is stiff.
+    pub(crate) const OTHER_SCHEME: &str = "radau3";
     /// Where nothing is found from the guess so many starts are tried, with that.
     pub(crate) const STARTS: usize = 5;
     /// A solve that ended at its limit of iterations and violates a condition by more found nothing

@@ -10,7 +10,7 @@ use super::terms::{Inputs, Terms, terms};
 use super::tuning::conditions::NO_WIDTH;
 use crate::record::{Record, number};
 use fdcc_runtime::problem::{Bounds, Columns, Function, Parameter, Problem, Variable};
-use fdcc_runtime::simulate::{Extreme, Simulation, System};
+use fdcc_runtime::simulate::{Event, EventKind, Extreme, Simulation, System};
 use std::collections::HashMap;
 
 /// By how much a condition is violated at worst.
@@ -94,15 +94,41 @@ impl<'a> Conditions<'a> {
     }
 
     fn bounds(&self) -> impl Iterator<Item = Condition> {
-        let states = self.problem.states.iter().zip(&self.states).zip(&self.motions);
-        states.map(|((state, column), motion)| {
-            let terms = |value: &f64| Terms {
-                size: value.abs().max(motion.range),
-                rounding: motion.rounding,
+        let states = self.problem.states.iter().zip(&self.states).zip(&self.motions).enumerate();
+        states.map(|(at, ((state, column), motion))| {
+            let with_terms = |value: f64| {
+                (value, Terms { size: value.abs().max(motion.range), rounding: motion.rounding })
             };
-            let values = column.iter().skip(1).map(|value| (*value, terms(value)));
-            self.condition(&state.name, worst_of(state.bounds, values))
+            let values = column.iter().skip(1).map(|value| with_terms(*value));
+            let at_points = self.condition(&state.name, worst_of(state.bounds, values));
+            self.beside_jumps(self.columns[at], state.bounds, &with_terms, at_points)
         })
+    }
+
+    /// The worst of a bound beside jumps, too, where it is worse than at all points: just before a
+    /// jump and just behind it.
+    fn beside_jumps(
+        &self,
+        column: usize,
+        bounds: Bounds,
+        with_terms: &dyn Fn(f64) -> (f64, Terms),
+        at_points: Condition,
+    ) -> Condition {
+        let is_jump = |it: &&Event| matches!(it.kind, EventKind::Jump(_));
+        let jumps = self.simulation.events.iter().filter(is_jump);
+        let jumps = jumps.filter(|it| it.time > self.points.times[0]);
+        let sides = jumps.flat_map(|it| [(it.time, &it.before), (it.time, &it.after)]);
+        let conditions = sides.map(|(time, state)| {
+            let worst = worst_of(bounds, [with_terms(state[column])]);
+            let Worst { violation, part, .. } = worst;
+            let (time, state) = (Some(time), state.clone());
+            Condition { label: at_points.label.clone(), violation, part, time, state }
+        });
+        let worst = conditions.max_by(|a, b| a.part.total_cmp(&b.part));
+        match worst {
+            Some(it) if (it.part, it.violation) > (at_points.part, at_points.violation) => it,
+            _ => at_points,
+        }
     }
 
     /// After the start, as a transcription has it.

@@ -105,6 +105,10 @@ pub trait Nlp {
     fn values(&mut self, v: &[f64], constraints: &mut [f64]) -> f64;
     /// Gradient, Jacobian and the Hessian of `weight * f + multipliers . c`.
     fn derivatives(&mut self, v: &[f64], weight: f64, multipliers: &[f64], out: &mut Derivatives);
+    /// Whether derivatives may jump.
+    fn has_kinks(&self) -> bool {
+        true
+    }
     /// Whether a constraint is known to be linear by its structure.
     fn is_linear(&self, _constraint: usize) -> bool {
         false

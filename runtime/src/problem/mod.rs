@@ -92,6 +92,8 @@ pub struct Problem {
     /// Whether neither `dynamics` nor `path` depends on the time but through states and controls,
     /// and nothing is measured at certain times.
     pub is_autonomous: bool,
+    /// Whether dynamics, path constraints or ends have kinks or knots.
+    pub has_kinks: bool,
     /// The unknown that is the last time and appears in no right side, path constraint or first
     /// time.
     pub last_time: Option<usize>,

@@ -6,7 +6,7 @@ use super::warm_start::values_of;
 use crate::nlp::{Nlp, Solution, Start};
 use crate::problem::{Bounds, Chain};
 use crate::random::Random;
-use crate::solution::{ChainOutcome, Elsewhere};
+use crate::solution::{ChainOutcome, Elsewhere, Outcome};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
@@ -39,6 +39,13 @@ pub fn perturbed(chain: &Chain, base: Option<Vec<f64>>, index: u32) -> Start {
 /// do: with its multipliers, as a large barrier parameter drives controls away from bounds, and
 /// without, as the multipliers may lead back.
 pub fn elsewhere(chain: &Chain, outcome: &ChainOutcome) -> Vec<Start> {
+    let is_violated = |phase: &Outcome| {
+        let hamiltonian = &phase.trajectory.hamiltonian;
+        hamiltonian.violations.iter().any(|part| *part > 0.0)
+    };
+    if !outcome.phases.iter().any(is_violated) {
+        return Vec::new();
+    }
     let mut nlp = ChainNlp::new(chain);
     let whole = Start::near(&outcome.solution);
     let mut own = nlp.shape().split(&whole);
@@ -46,8 +53,7 @@ pub fn elsewhere(chain: &Chain, outcome: &ChainOutcome) -> Vec<Start> {
     for (at, (phase, problem)) in outcome.phases.iter().zip(&chain.phases).enumerate() {
         let (trajectory, solution) = (&phase.trajectory, &phase.solution);
         let (hamiltonian, time) = (&trajectory.hamiltonian, &trajectory.time);
-        let is_violated = hamiltonian.violations.iter().any(|part| *part > 0.0);
-        if is_violated && hamiltonian.has_to_be_least(problem, solution) {
+        if is_violated(phase) && hamiltonian.has_to_be_least(problem, solution) {
             let duration = time[time.len() - 1] - time[0];
             let nlp = nlp.phase_at(at, &whole.v);
             let it = Elsewhere::new(nlp, solution, (duration, hamiltonian));

@@ -76,6 +76,10 @@ impl Nlp for TranscribedNlp<'_> {
         self.ends.scatter(gradient, jacobian, hessian);
     }
 
+    fn has_kinks(&self) -> bool {
+        self.problem.has_kinks
+    }
+
     fn is_linear(&self, row: usize) -> bool {
         let problem = self.problem;
         if let Some(i) = row.checked_sub(self.stages.coupling().start) {

@@ -59,11 +59,29 @@ impl Modes<'_> {
                 rows.push(self.within_ball(switch.place, &all));
                 continue;
             }
-            let left = self.left(j, &switch, phases[j + 1].modes[at]).filter(|_| is_uncontrolled);
-            let bounds = left.map_or([-1.0, 1.0], |side| [side, side]);
+            let left = self.left(j, &switch, phases[j + 1].modes[at]);
+            let bounds = match left.filter(|_| is_uncontrolled) {
+                Some(side) => [side, side],
+                None => [-1.0, 1.0],
+            };
             rows.push(self.selector(switch.place, all[0], bounds));
+            if left.is_some() && !is_uncontrolled && phases[j + 1].is_joined {
+                rows.push(self.tangent(j, &switch));
+            }
         }
         rows
+    }
+
+    /// `psi' = 0` where the phase begins that leaves a surface: a control that does not jump there
+    /// leaves it along it.
+    fn tangent(&mut self, j: usize, switch: &Switch) -> Constraint {
+        let (moving, range) =
+            (self.moving(&self.phases[j + 1]), self.between.division.exactly_zero());
+        let surface = &self.between.division.model.surfaces[switch.surfaces.start];
+        let rate = approach(&moving, &mut self.between.division.graph, surface.psi);
+        let value = self.between.division.at_start(j + 1, rate);
+        let place = Place { name: format!("{} left", surface.place.name), ..surface.place };
+        Constraint { place, value, range }
     }
 
     /// The side to which a surface is left at the end of a phase: 1 or -1.

@@ -6,12 +6,13 @@
 //!
 //! As a model it has one interval of length 1 in which nothing moves.
 
-use super::{Modes, PhaseOfModes, prepared, refuse};
+use super::{Mode, Modes, PhaseOfModes, prepared, refuse};
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ExprId, Graph};
 use crate::lower::objective::integrals_in_states;
 use crate::model::{Constraint, Control, Integral, Model, Range, Symbol};
 use crate::phases::division::{Division, divide};
+use crate::phases::hold::approach;
 use crate::phases::shares::is_given;
 use crate::phases::{Jumps, MultiPhase};
 use fdcc_grammar::Diagnostic;
@@ -32,7 +33,9 @@ pub struct Point {
     pub unknowns: Vec<f64>,
 }
 
-/// A model whose objective is the Hamiltonian of the model, as written, at a point of a phase.
+/// A model whose objective is the Hamiltonian of the model, as written, at a point of a phase;
+/// where that leaves the surfaces of some [`Model::switches`], with controls that lead to its
+/// sides.
 ///
 /// # Errors
 ///
@@ -41,17 +44,18 @@ pub fn hamiltonian(
     model: &Model,
     of: &PhaseOfModes,
     point: &Point,
+    leaving: &[usize],
 ) -> Result<Model, Vec<Diagnostic>> {
     refuse(model)?;
     let (jumps, mut whole) = (Jumps::new(model)?, prepared(model));
     let times = divide(&mut whole, Vec::new());
     let between = MultiPhase::new(&jumps, Division::new(&whole, times), &[]);
     let phases = std::slice::from_ref(of);
-    Ok(Modes { between, phases, linked: None }.into_hamiltonian(point))
+    Ok(Modes { between, phases, linked: None }.into_hamiltonian(point, leaving))
 }
 
 impl Modes<'_> {
-    fn into_hamiltonian(mut self, point: &Point) -> Model {
+    fn into_hamiltonian(mut self, point: &Point, leaving: &[usize]) -> Model {
         let model = self.between.division.model;
         let of = &self.phases[0];
         let meanings = self.selectors(of);
@@ -68,8 +72,23 @@ impl Modes<'_> {
             let is_control = |at: &u32| matches!(model.symbols[*at as usize], Symbol::Control(_));
             graph.inputs_of(&[id]).iter().any(is_control)
         };
-        let rows: Vec<Constraint> = rows.into_iter().filter(|it| reads(graph, it.value)).collect();
+        let mut rows: Vec<Constraint> =
+            rows.into_iter().filter(|it| reads(graph, it.value)).collect();
+        rows.extend(leaving.iter().flat_map(|at| self.departure(*at, &moving)));
         self.at_point(point, value, rows, controls)
+    }
+
+    /// That `psi'` leads to the side of a surface that the phase is on.
+    fn departure(&mut self, switch: usize, moving: &Model) -> Option<Constraint> {
+        let model = self.between.division.model;
+        let range = match self.phases[0].modes[switch] {
+            Mode::Above => self.between.division.not_below(),
+            Mode::Below => self.between.division.not_above(),
+            Mode::Held => return None,
+        };
+        let surface = &model.surfaces[model.switches()[switch].surfaces.start];
+        let value = approach(moving, &mut self.between.division.graph, surface.psi);
+        Some(Constraint { place: surface.place.clone(), value, range })
     }
 
     /// What each unit of time adds to the objective by each integral; `of_states` are the

@@ -8,7 +8,7 @@ use fdcc_runtime::problem::End;
 
 impl Modes<'_> {
     /// The state goes on; a surface that is left or reached is 0; a bound that is reached is met;
-    /// phases have durations.
+    /// beside a jump all bounds are; phases have durations.
     pub(super) fn link(&mut self, j: usize) -> Link {
         let mut rows = match self.phases[j + 1].jump {
             Some(_) => self.between.at_jump(j),
@@ -16,6 +16,7 @@ impl Modes<'_> {
         };
         rows.extend(self.events(j));
         rows.extend(self.entries(j));
+        rows.extend(self.beside_jump(j));
         rows.extend(self.departures(j));
         rows.extend(self.ends_of_controls(j));
         rows.extend(self.ends_of_path(j));

@@ -17,6 +17,7 @@
 //! A control may have an *arc*: it is at one of its bounds throughout a phase. So may a state or a
 //! path condition: `limits`.
 
+mod beside_jumps;
 mod departures;
 mod ends;
 mod hamiltonian;
@@ -93,7 +94,8 @@ pub struct PhaseOfModes {
     /// Whether controls jump where it begins, though nothing else changes.
     pub is_cut: bool,
     /// Whether controls that reach their bounds where it begins are at these on both sides, though
-    /// an arc of a limit begins or ends there.
+    /// an arc of a limit begins or ends there; and surfaces that are left there are left along
+    /// them.
     pub is_joined: bool,
 }
 
@@ -186,7 +188,7 @@ fn with_modes_from(
 
 /// The model with symbols of selectors that are chosen, which stand behind the controls.
 fn prepared(model: &Model) -> Model {
-    let mut whole = Model { smooth: false, ..between_jumps(model) };
+    let mut whole = Model { smooth: false, ..between_jumps(model).into_owned() };
     for at in 0..whole.surfaces.len() {
         let at = model.controls.len() + at;
         for symbol in [Symbol::Control, Symbol::ControlAtStart, Symbol::ControlAtEnd] {

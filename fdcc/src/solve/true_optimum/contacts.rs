@@ -6,7 +6,7 @@ use super::Located;
 use super::path_values::{path_at_ends, path_values, slopes};
 use super::tracks::Track;
 use super::tuning::contacts::{
-    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, OF_BOUND, SEEN, TOUCHED,
+    FEWEST_OF_ARC, FEWEST_OF_HOLD, NEAR, NEAR_BOUND, NONE, NONE_OF_LARGEST, OF_BOUND, SEEN, TOUCHED,
 };
 use super::tuning::structure::SHORTEST;
 use fdcc_compiler::{Arc, Limit, Mode, Model, PhaseOfModes, Switch, limits, may_hold};
@@ -219,7 +219,8 @@ impl<'l> Contacts<'l> {
         let problem = &self.located.chain.phases[j];
         let bounds = problem.path_bounds[row];
         let values = path_values(problem, &self.located.outcome.phases[j].trajectory, row);
-        let least = NONE * self.size(j) / range;
+        let largest = own.iter().fold(0.0, |a: f64, it| a.max(it.abs()));
+        let least = (NONE * self.size(j) / range).max(NONE_OF_LARGEST * largest);
         let is_near = |k: usize, bound: f64| {
             let ends = values[k..].iter().take(2);
             ends.map(|it| (it - bound).abs()).fold(f64::INFINITY, f64::min) < NEAR_BOUND * range

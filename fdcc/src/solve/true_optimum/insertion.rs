@@ -16,7 +16,6 @@ use super::point::point_of;
 use super::polynomials::polynomials;
 use super::pressed::Selector;
 use super::structure::Structure;
-use super::tuning::certificate::WORTH;
 use super::tuning::insertion::{INSIDE, ON_SURFACE, RELEASED, SETTLED};
 use super::{Located, Search};
 use fdcc_compiler::{
@@ -73,7 +72,7 @@ impl Search<'_> {
             candidates.extend(self.releases(located, j));
         }
         candidates.extend(self.releases_at_ends(located));
-        candidates.extend(self.departures_at_the_end(located));
+        candidates.extend(self.departures(located));
         candidates.extend(self.across_links(located));
         candidates.extend(self.across_surfaces(located));
         candidates
@@ -86,8 +85,8 @@ impl Search<'_> {
         let [before, after] = [&phases[j - 1], &phases[j]];
         let goes_on = |at: usize| after.modes[at] == Mode::Held && before.modes != after.modes;
         let released = self.released(located, j - 1, 1).into_iter().filter(|it| goes_on(it.0));
-        let off = |(at, mode)| [before, after].map(|beside| off_surface(j, beside, at, mode));
-        released.flat_map(off).collect()
+        let both = |(at, mode)| [before, after].map(|beside| off_surface(j, beside, at, mode));
+        released.flat_map(both).collect()
     }
 
     /// The same at the first and the last time.
@@ -100,22 +99,6 @@ impl Search<'_> {
             released.map(move |(at, mode)| off_surface(before, &phases[j], at, mode))
         })
         .collect()
-    }
-
-    /// What is held at the last time may be left by other controls than its own. The derivative
-    /// does not know whether these leave it to that side, so that its worth is tried.
-    fn departures_at_the_end(&self, located: &Located) -> Vec<Candidate> {
-        let phases = &located.structure.phases;
-        let (last, behind) = (&phases[phases.len() - 1], phases.len());
-        let switches = self.model.switches().into_iter().enumerate();
-        let held = switches.filter(|(at, it)| last.modes[*at] == Mode::Held && !it.is_ball);
-        let both = held.flat_map(|(at, _)| [Mode::Above, Mode::Below].map(|mode| (at, mode)));
-        let off = both.map(|(at, mode)| Candidate {
-            is_doubtful: true,
-            ..off_surface(behind, last, at, mode)
-        });
-        let worth = |it: &Candidate| self.worth(located, behind, &it.held).0;
-        off.filter(|it| (f64::MIN..-WORTH).contains(&worth(it))).collect()
     }
 
     /// The surfaces whose selectors are at a bound where a hold begins (0) or ends (1), and the
@@ -232,10 +215,15 @@ impl Search<'_> {
 
 /// A phase beside another one that is off a surface which that holds.
 fn off_surface(before: usize, beside: &PhaseOfModes, at: usize, mode: Mode) -> Candidate {
-    let mut off = PhaseOfModes { jump: None, ..beside.clone() };
+    tried(before, off(beside, at, mode))
+}
+
+/// A phase that is off a surface which another one holds.
+pub(super) fn off(held: &PhaseOfModes, at: usize, mode: Mode) -> PhaseOfModes {
+    let mut off = PhaseOfModes { jump: None, ..held.clone() };
     off.modes[at] = mode;
     off.release();
-    tried(before, off)
+    off
 }
 
 /// A candidate whose worth only a trial tells.
@@ -252,7 +240,17 @@ pub(super) fn tried(before: usize, held: PhaseOfModes) -> Candidate {
 
 /// The problem of the least Hamiltonian at a point; nothing where its terms are not known.
 pub(super) fn at_point(model: &Model, of: &PhaseOfModes, point: &Point) -> Option<Chain> {
-    let model = hamiltonian(model, of, point).ok()?;
+    at_departure(model, of, point, &[])
+}
+
+/// The same over controls that lead off the surfaces of some switches.
+pub(super) fn at_departure(
+    model: &Model,
+    of: &PhaseOfModes,
+    point: &Point,
+    leaving: &[usize],
+) -> Option<Chain> {
+    let model = hamiltonian(model, of, point, leaving).ok()?;
     compile_chain(&model).ok()
 }
 

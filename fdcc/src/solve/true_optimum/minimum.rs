@@ -133,7 +133,7 @@ pub(super) fn interpolation(time: &[f64], (k, part): (usize, f64)) -> impl Fn(&[
 }
 
 /// Controls and selectors at a time on interval `k`.
-fn controls_at(own: &Trajectory, k: usize, time: f64) -> Vec<f64> {
+pub(super) fn controls_at(own: &Trajectory, k: usize, time: f64) -> Vec<f64> {
     let value = |at: usize| match polynomials(own, at).get(k) {
         Some(piece) => piece.at(time),
         None => own.controls[at][k],

@@ -19,6 +19,7 @@ mod certificate;
 mod contacts;
 mod corners;
 mod costates;
+mod departures;
 mod hold_sensitivities;
 mod impulses;
 mod insertion;
@@ -260,9 +261,20 @@ impl Search<'_> {
         located
     }
 
+    /// From a short phase; where that leads to nothing better though the objective is known to
+    /// fall, or may fall to second order, from a longer one.
     fn held(&mut self, located: &Located, candidate: &Candidate) -> Trial {
         let base = candidate.into.as_ref().unwrap_or(&located.structure);
-        let structure = base.with_phase(candidate.before, candidate.held.clone());
+        let (before, phase) = (candidate.before, &candidate.held);
+        let first = self.tried(located, candidate, base.with_phase(before, phase.clone()));
+        match first {
+            Trial::Better(_) => first,
+            _ if candidate.slope == f64::NEG_INFINITY && !candidate.is_doubtful => first,
+            _ => self.tried(located, candidate, base.with_longer_phase(before, phase.clone())),
+        }
+    }
+
+    fn tried(&mut self, located: &Located, candidate: &Candidate, structure: Structure) -> Trial {
         let is_better = |held: &Located| {
             if candidate.is_forced {
                 return true;

@@ -14,9 +14,13 @@ impl Search<'_> {
             let whole = self.whole(&located);
             match self.solve(structure, &whole) {
                 Some(finer) => {
-                    let insertion = located.insertion;
+                    let (insertion, before) = (located.insertion, located.structure.clone());
                     let finer = self.mended(finer).expect("it is solved");
-                    located = Located { insertion, ..finer };
+                    // What its holds are worth is known of the same modes only.
+                    located = match finer.structure.has_modes_of(&before) {
+                        true => Located { insertion, ..finer },
+                        false => self.with_holds(finer),
+                    };
                 }
                 None => return located,
             }

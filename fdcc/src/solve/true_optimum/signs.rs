@@ -184,7 +184,7 @@ impl At {
 }
 
 /// The states that a value reads, at any time.
-fn states_of(model: &Model, value: ExprId) -> Vec<usize> {
+pub(super) fn states_of(model: &Model, value: ExprId) -> Vec<usize> {
     let state = |at: u32| match &model.symbols[at as usize] {
         Symbol::State(state) | Symbol::AtEnd(state) => Some(*state),
         _ => None,

@@ -109,6 +109,11 @@ impl Structure {
         })
     }
 
+    /// Whether the modes of another structure follow each other as its own do.
+    pub fn has_modes_of(&self, other: &Structure) -> bool {
+        self.phases.iter().map(|it| &it.modes).eq(other.phases.iter().map(|it| &it.modes))
+    }
+
     /// First and last time.
     pub fn ends(&self) -> [f64; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
@@ -279,17 +284,28 @@ impl Structure {
 
     /// With a short phase before another, or behind the last.
     pub fn with_phase(&self, before: usize, phase: PhaseOfModes) -> Self {
-        let mut other = self.clone();
         let [first, last] = self.ends();
-        let count = self.phases.len();
-        let beside = [before.checked_sub(1), Some(before).filter(|it| *it < count)];
+        let length = (TRIED * (last - first)).min(TRIED_BESIDE * self.shortest_beside(before));
+        self.with_phase_of_length(before, phase, length)
+    }
+
+    /// The same with one that is as long as half of the shortest phase beside it.
+    pub fn with_longer_phase(&self, before: usize, phase: PhaseOfModes) -> Self {
+        self.with_phase_of_length(before, phase, 0.5 * self.shortest_beside(before))
+    }
+
+    fn shortest_beside(&self, before: usize) -> f64 {
+        let beside = [before.checked_sub(1), Some(before).filter(|it| *it < self.phases.len())];
         let lengths = beside.into_iter().flatten().map(|j| self.times[j + 1] - self.times[j]);
-        let shortest = lengths.fold(f64::INFINITY, f64::min);
-        let length = (TRIED * (last - first)).min(TRIED_BESIDE * shortest);
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
+    fn with_phase_of_length(&self, before: usize, phase: PhaseOfModes, length: f64) -> Self {
+        let mut other = self.clone();
         let at = self.times[before];
         let ends = match before {
             0 => [at, at + length],
-            _ if before == count => [at - length, at],
+            _ if before == self.phases.len() => [at - length, at],
             _ => [at - 0.5 * length, at + 0.5 * length],
         };
         other.phases.insert(before, phase);

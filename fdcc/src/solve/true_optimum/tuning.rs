@@ -131,6 +131,8 @@ pub(super) mod contacts {
     /// A multiplier is none that is worth less than this, over the range of its limit, of the size
     /// of the Hamiltonian.
     pub(crate) const NONE: f64 = 1e-5;
+    /// Nor is one that is less than this part of the largest on its phase: the barrier has left it.
+    pub(crate) const NONE_OF_LARGEST: f64 = 1e-5;
     /// A limit is near its bound where it is nearer than this part of its range, at one end of an
     /// interval.
     pub(crate) const NEAR_BOUND: f64 = 0.02;
@@ -196,6 +198,8 @@ pub(super) mod insertion {
     pub(crate) const RELEASED: f64 = 0.999;
     /// A neighbour is looked at by this part of an interval inside of it.
     pub(crate) const INSIDE: f64 = 1e-7;
+    /// A hold is left after these parts of it; in the middle where all are as good.
+    pub(crate) const PARTS_OF_HOLD: [f64; 3] = [0.5, 0.1, 0.9];
 }
 
 pub(super) mod range {

@@ -94,6 +94,20 @@ impl Kkt {
         false
     }
 
+    /// Whether the matrix that was assembled has the right inertia with so much less on the
+    /// diagonal of each variable.
+    pub(super) fn curves_by(
+        &mut self,
+        least: &[f64],
+        formulation: &Formulation,
+        slopes: &Slopes,
+        counts: &mut Counts,
+    ) -> bool {
+        self.sigma.iter_mut().zip(least).for_each(|(sigma, least)| *sigma -= least);
+        self.regularization = 0.0;
+        self.factor_once(formulation, slopes, 0.0, counts) == Inertia::Correct
+    }
+
     /// Whether some regularisation gave the right inertia.
     pub(super) fn is_factored(&self) -> bool {
         self.regularization <= LARGEST_REGULARIZATION

@@ -13,6 +13,7 @@ mod formulation;
 mod inertia;
 mod initialisation;
 mod iterate;
+mod kinks;
 mod kkt;
 mod line_search;
 mod residuals;
@@ -27,7 +28,9 @@ mod watchdog;
 use super::conclusion::{Ended, conclude};
 use super::scaling::Scaled;
 use super::scaling::factors::ScalingFactors;
-use super::{Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch};
+use super::{
+    Multipliers, Nlp, Options, Progress, Solution, Start, Status, Watch, constraint_violation,
+};
 use crate::linalg::solvers::{cheapest, more_robust};
 use crate::problem::Linear;
 use algorithm::Algorithm;
@@ -46,7 +49,11 @@ pub fn solve(nlp: &mut dyn Nlp, start: &Start, options: &Options, watch: &mut Wa
     let mut best = attempt(nlp, start, &options, watch);
     if options.is_final {
         best = rescaled_by_the_answer(best, nlp, start, &options, watch);
+        let was_solved = best.status.is_solved();
         best = away_from_flat_points(best, nlp, &options, watch);
+        if was_solved && !best.status.is_solved() {
+            return best;
+        }
     }
     // Solver fallback: other rounding and regularisation.
     if is_automatic
@@ -94,11 +101,15 @@ fn rescaled_by_the_answer(
     options: &Options,
     watch: &mut Watch,
 ) -> Solution {
+    let is_open =
+        |it: &Solution| matches!(it.status, Status::Acceptable | Status::NumericalFailure);
+    if !is_open(&best) {
+        return best;
+    }
     let mut used = ScalingFactors::new(nlp, &start.v);
     for _ in 0..MOST_RESCALINGS {
-        let is_open = matches!(best.status, Status::Acceptable | Status::NumericalFailure);
         let factors = ScalingFactors::of_answer(nlp, &best.v);
-        if !is_open || factors.distance(&used) <= FAR {
+        if !is_open(&best) || factors.distance(&used) <= FAR {
             break;
         }
         used = factors.clone();
@@ -132,7 +143,7 @@ fn away_from_flat_points(
             best.clone(),
             nlp,
             &Options { max_iter, ..*options },
-            from(&Start { v, warm: None }, Algorithm::run),
+            from(&Start { v: v.clone(), warm: None }, Algorithm::run),
             watch,
         );
         let is_solved = next.status == Status::Solved || next.status == Status::Unbounded;
@@ -140,9 +151,27 @@ fn away_from_flat_points(
         best.counts = next.counts;
         if is_lower {
             best = next;
+        } else if is_feasible_and_lower(nlp, &v, &best, options.tol) {
+            return no_minimum(best, options);
         }
     }
     best
+}
+
+/// Whether a point meets all conditions and has a lower objective than an answer.
+fn is_feasible_and_lower(nlp: &mut dyn Nlp, v: &[f64], answer: &Solution, tol: f64) -> bool {
+    let mut rows = vec![0.0; nlp.constraint_bounds().len()];
+    let is_lower = nlp.values(v, &mut rows) < answer.objective;
+    is_lower && constraint_violation(nlp, v) <= tol
+}
+
+/// What lies beside a better point, where nothing was found from that.
+fn no_minimum(answer: Solution, options: &Options) -> Solution {
+    let status = match answer.counts.iterations >= options.max_iter {
+        true => Status::IterationLimit,
+        false => Status::NumericalFailure,
+    };
+    Solution { status, is_saddle: true, ..answer }
 }
 
 /// Whether another attempt may end otherwise.

@@ -80,8 +80,17 @@ impl Algorithm {
         if worth <= found.least_gain(self.options.tol) {
             return false;
         }
-        let (reach, least) = (self.reach(nlp), self.least_curvature(nlp, found));
-        let Algorithm { formulation, at, slopes, kkt, barrier, counts, .. } = self;
+        let least = self.least_curvature(nlp, found);
+        self.assemble_without_barrier(nlp);
+        let Algorithm { formulation, slopes, kkt, barrier, counts, .. } = self;
+        !kkt.factor_barely(formulation, slopes, barrier.mu, least, counts)
+    }
+
+    /// The matrix at the iterate without what the barrier adds to it, but for variables that are
+    /// near a bound.
+    fn assemble_without_barrier(&mut self, nlp: &dyn Nlp) {
+        let reach = self.reach(nlp);
+        let Algorithm { formulation, at, slopes, kkt, barrier, .. } = self;
         kkt.assemble(formulation, at, slopes, barrier);
         let mut is_near = vec![false; reach.len()];
         formulation.for_each_bound(&at.y, |i, distance, _| {
@@ -89,7 +98,6 @@ impl Algorithm {
             is_near.get_mut(i).into_iter().for_each(|it| *it |= !reach.get(i).is_some_and(is_far));
         });
         kkt.forget_barrier(&is_near);
-        !kkt.factor_barely(formulation, slopes, barrier.mu, least, counts)
     }
 
     /// A point (one value per variable) beside the iterate, which stays, if that is no minimum.
@@ -114,27 +122,43 @@ impl Algorithm {
         nlp: &mut dyn Nlp,
         found: &Assessment,
     ) -> Option<Vec<f64>> {
+        let counts = found.least_gain(self.options.tol);
+        if self.rises_all_around(nlp, counts) {
+            return None;
+        }
         let least = self.least_curvature(nlp, found);
         self.factor_at_iterate(least);
-        let counts = found.least_gain(self.options.tol);
         (0..SIGN_PATTERNS).find_map(|pattern| {
             let start = signs(nlp, pattern);
             let (mut step, _) = self.softest_direction(&start, FEW_ITERATIONS)?;
             self.stretch(&self.own_sizes(nlp), &mut step);
-            self.descent_along(nlp, &mut step, counts)
+            self.descent_along(nlp, &mut step, &SHORT_STEPS, counts)
         })
     }
 
+    /// Whether the longest of the short steps costs what counts in every direction, as curvature
+    /// says without the barrier: with so much less of it the inertia is right still, and no
+    /// derivative of higher order has to decide.
+    fn rises_all_around(&mut self, nlp: &dyn Nlp, worth: f64) -> bool {
+        let [.., longest] = SHORT_STEPS;
+        let least = |size: &f64| 2.0 * worth / (longest * size).powi(2);
+        let least: Vec<f64> = self.own_sizes(nlp).iter().map(least).collect();
+        self.assemble_without_barrier(nlp);
+        let Algorithm { formulation, slopes, kkt, counts, .. } = self;
+        kkt.curves_by(&least, formulation, slopes, counts)
+    }
+
     /// The same along a step or back.
-    fn descent_along(
+    pub(super) fn descent_along(
         &mut self,
         nlp: &mut dyn Nlp,
         step: &mut SearchDirection,
+        parts: &[f64],
         counts: f64,
     ) -> Option<Vec<f64>> {
         let lagrangian = self.barrier_lagrangian(&self.values);
         for _ in 0..2 {
-            for part in SHORT_STEPS {
+            for part in parts {
                 let alpha =
                     part.min(self.barrier.longest_steps(&self.formulation, &self.at, step).0);
                 let (y, values) = self.moved(nlp, step, alpha)?;
@@ -152,7 +176,7 @@ impl Algorithm {
     }
 
     /// The point after a part of a step; `None` where it has no value.
-    fn moved(
+    pub(super) fn moved(
         &mut self,
         nlp: &mut dyn Nlp,
         step: &SearchDirection,
@@ -187,7 +211,7 @@ impl Algorithm {
     }
 
     /// See [`Kkt::factor_barely`](super::kkt::Kkt::factor_barely), at the iterate.
-    fn factor_at_iterate(&mut self, least: f64) -> bool {
+    pub(super) fn factor_at_iterate(&mut self, least: f64) -> bool {
         let Algorithm { formulation, at, slopes, kkt, barrier, counts, .. } = self;
         kkt.assemble(formulation, at, slopes, barrier);
         kkt.factor_barely(formulation, slopes, barrier.mu, least, counts)
@@ -235,7 +259,7 @@ impl Algorithm {
 
     /// The largest value over time of the quantity that each variable belongs to; its nominal
     /// magnitude, which is 1, where it is 0.
-    fn own_sizes(&self, nlp: &dyn Nlp) -> Vec<f64> {
+    pub(super) fn own_sizes(&self, nlp: &dyn Nlp) -> Vec<f64> {
         let quantities = nlp.quantities();
         let mut sizes = vec![0.0; quantities.units.len()];
         for (i, value) in quantities.variables.iter().zip(&self.at.y) {
@@ -247,7 +271,7 @@ impl Algorithm {
 
     /// Makes the step as long as bounds and the reach of the variable that moves most allow; its
     /// length.
-    fn stretch(&self, reach: &[f64], step: &mut SearchDirection) -> f64 {
+    pub(super) fn stretch(&self, reach: &[f64], step: &mut SearchDirection) -> f64 {
         let moves = reach.iter().zip(&step.y).map(|(reach, d)| d.abs() / reach);
         let factor = 1.0 / moves.fold(f64::MIN_POSITIVE, f64::max);
         step.y.iter_mut().for_each(|d| *d *= factor);
@@ -293,7 +317,7 @@ impl Algorithm {
         false
     }
 
-    fn barrier_lagrangian(&self, values: &Values) -> f64 {
+    pub(super) fn barrier_lagrangian(&self, values: &Values) -> f64 {
         self.barrier.value(values) + dot(&self.at.lambda, &values.residuals)
     }
 }

@@ -118,10 +118,11 @@ impl Algorithm {
     }
 
     fn word(&mut self, nlp: &mut dyn Nlp, found: &Assessment) -> Status {
+        self.descent = self.descent_from_kink(nlp, found);
         if !found.is_convincing(self.options.tol) {
             return Status::Acceptable;
         }
-        self.descent = self.descent_of_higher_order(nlp, found);
+        self.descent = self.descent.take().or_else(|| self.descent_of_higher_order(nlp, found));
         Status::Solved
     }
 

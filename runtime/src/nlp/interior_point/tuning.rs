@@ -182,6 +182,18 @@ pub(crate) mod saddle {
     pub(crate) const GOLDEN: f64 = 0.618_033_988_749_895;
 }
 
+pub(crate) mod kinks {
+    /// Both sides of a kink are looked at by this part of the sizes, farther than a solve comes
+    /// near to it, and nearer than curvature tells.
+    pub(crate) const BESIDE: f64 = 1e-6;
+    /// Gradients differ where steps by all sizes are worth more than this part of the objective.
+    pub(crate) const DIFFERENT: f64 = 1e-4;
+    /// Steps along the way down, as parts of the sizes: rows with kinks do not follow.
+    pub(crate) const SHORT_STEPS: [f64; 3] = [1e-5, 1e-4, 1e-3];
+    /// From one of these on another attempt may begin.
+    pub(crate) const LONG_STEPS: [f64; 3] = [1e-3, 1e-2, 1e-1];
+}
+
 pub(crate) mod termination {
     /// An error this small for this many iterations is acceptable.
     pub(crate) const ACCEPTABLE_ERROR: f64 = 1e-6;

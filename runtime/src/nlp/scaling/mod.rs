@@ -153,6 +153,9 @@ impl Nlp for Scaled<'_> {
         out.jacobian.iter_mut().zip(&self.entries).for_each(|(value, s)| *value *= s);
         out.hessian.iter_mut().zip(&self.curvatures).for_each(|(value, s)| *value *= s);
     }
+    fn has_kinks(&self) -> bool {
+        self.inner.has_kinks()
+    }
     fn is_linear(&self, row: usize) -> bool {
         self.inner.is_linear(row)
     }

@@ -252,6 +252,10 @@ impl Nlp for ChainNlp<'_> {
         }
     }
 
+    fn has_kinks(&self) -> bool {
+        !self.links.is_empty() || self.parts.iter().any(|part| part.nlp.has_kinks())
+    }
+
     fn is_linear(&self, row: usize) -> bool {
         let phase = self.parts.iter().find(|part| part.shape.rows.contains(&row));
         match phase {

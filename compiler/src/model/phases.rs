@@ -93,6 +93,13 @@ impl Model {
         Symbols { graph: &mut self.graph, symbols: &mut self.symbols }
     }
 
+    /// Whether something is minimised, in a phase or a link as well.
+    pub(crate) fn has_objective(&self) -> bool {
+        self.objective.is_some()
+            || self.phases.iter().any(|it| it.model.objective.is_some())
+            || self.links.iter().any(|it| it.objective.is_some())
+    }
+
     /// Gives a phase the parameters and unknowns of the whole.
     pub(crate) fn share_parameters(&self, phase: &mut Model) {
         let mut own = phase.symbols_mut();

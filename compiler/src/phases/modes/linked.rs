@@ -5,7 +5,7 @@
 //! ways, that would be said twice, and the Jacobian of the chain would lose rank.
 
 use super::limits::{bounded_states, rates};
-use super::{Arc, Mode, PhaseOfModes};
+use super::{Arc, Mode, PhaseOfModes, between_jumps};
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ById, ExprId, Graph};
 use crate::model::phases::Symbols;
@@ -118,7 +118,7 @@ impl Linked {
     /// What is 0 at the last time of a phase: surfaces that are held, bounds that are kept, and
     /// what its conditions say.
     fn take_zeros(&mut self, model: &Model, phase: usize, last: &PhaseOfModes) {
-        let own = &model.phases[phase].model;
+        let own = &between_jumps(&model.phases[phase].model);
         let mut graph = own.graph.clone();
         let mut zeros = Vec::new();
         for (switch, _) in own.switches().iter().zip(&last.modes).filter(|it| *it.1 == Mode::Held) {

@@ -42,6 +42,7 @@ mod repair;
 mod replayed;
 mod signs;
 mod simpler;
+mod slices;
 mod start;
 mod structure;
 mod switches;
@@ -59,6 +60,7 @@ pub(crate) use polynomials::beyond_bounds;
 pub(crate) use range::{Range, ranges};
 pub(crate) use repair::{is_attracted, jumps_in_the_end, wrong_sign};
 pub(crate) use replayed::replayed;
+pub(crate) use slices::{Slice, slices};
 pub(crate) use structure::variations;
 pub(crate) use tuning::certificate as certificate_limits;
 

@@ -44,8 +44,8 @@ pub use model::{Along, Border, Model, Phase, Plane, Plot, Switch};
 pub use phases::{
     Arc, Combination, Course, Ends, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point,
     Sequences, Slopes, beside, between_jumps, combinations, crossings, ends_at, hamiltonian,
-    is_uncontrolled, limits, may_hold, sequences, with_jumps_in_phases, with_modes,
-    with_modes_in_phases, with_phases, with_times,
+    is_uncontrolled, limits, may_hold, sequences, with_beginnings, with_jumps_in_phases,
+    with_modes, with_modes_in_phases, with_phases, with_times,
 };
 pub use settings::is_key as is_method_key;
 pub use surfaces::{Order, Smoothness, SurfaceClass, SurfaceReport, smoothness, surfaces};

@@ -145,7 +145,10 @@ fn told_early(model: &Model) -> Option<Diagnostic> {
     let by_solve = || model.jump_by_side().filter(|_| model.has_objective());
     let (mut first, help) = match by_all {
         Some(found) => (found, "`solve`, `simulate` and `grad` refuse it"),
-        None => (by_solve()?, "`simulate` and `grad` take it, `solve` refuses it"),
+        None if model.phases.is_empty() => {
+            (by_solve()?, "`simulate` and `grad` take it, `solve` refuses it")
+        }
+        None => (by_solve()?, "`simulate` takes it, `solve` refuses it"),
     };
     first.severity = Severity::Advice;
     Some(first.help(format!("it is checked all the same; {help}")))

@@ -6,6 +6,7 @@
 
 use super::with_phases;
 use crate::expressions::graph::{ById, ExprId, Graph};
+use crate::model::guess::fixed_by_a_row;
 use crate::model::{Constraint, Free, Link, Model, Phase, Place, Range, Symbol};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::End;
@@ -27,7 +28,10 @@ pub fn with_jumps_in_phases(
     })?;
     let mut pieces = divided.phases.iter_mut();
     for (written, sequence) in model.phases.iter().zip(sequences) {
+        let open = open_states(&written.model);
         for (j, piece) in pieces.by_ref().take(sequence.len() + 1).enumerate() {
+            // What is known of these, links say.
+            open.iter().for_each(|at| piece.model.states[*at].guess = None);
             match j {
                 0 => {
                     piece.place.clone_from(&written.place);
@@ -38,6 +42,17 @@ pub fn with_jumps_in_phases(
         }
     }
     Ok(divided)
+}
+
+/// The states of which a phase by itself knows nothing at the first time.
+fn open_states(phase: &Model) -> Vec<usize> {
+    let mut graph = phase.graph.clone();
+    let mut is_open = |at: &usize| {
+        let state = &phase.states[*at];
+        let is_silent = state.start.is_none() && state.guess.is_none();
+        is_silent && fixed_by_a_row(phase, &mut graph, Symbol::AtStart(*at)).is_none()
+    };
+    (0..phase.states.len()).filter(|at| is_open(at)).collect()
 }
 
 /// The model in which each phase, which is given the times of all, is what it is divided into.

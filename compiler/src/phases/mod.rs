@@ -33,7 +33,7 @@ pub use crossings::crossings;
 pub use in_phases::with_jumps_in_phases;
 pub use modes::{
     Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Slopes, hamiltonian,
-    is_uncontrolled, limits, may_hold, with_modes, with_modes_in_phases,
+    is_uncontrolled, limits, may_hold, with_beginnings, with_modes, with_modes_in_phases,
 };
 pub use sequences::{Sequences, sequences};
 

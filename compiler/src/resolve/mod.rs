@@ -11,7 +11,7 @@ mod items;
 pub(crate) mod phases;
 
 use crate::data::Tables;
-use crate::model::{Model, Phase, Place, Surface};
+use crate::model::{Begins, Model, Phase, Place, Surface};
 use crate::settings::SCHEME_OF_FITS;
 use crate::syntax::scope::Scope;
 use crate::units::{self, Readings};
@@ -107,6 +107,7 @@ impl Elaborator<'_> {
         let surface = |entry: elaborator::SurfaceEntry| Surface {
             place: entry.place,
             psi: entry.psi.unwrap_or(zero),
+            begins: Begins::default(),
         };
         let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
         let phase = |inner: Inner<'_>| Phase {

@@ -131,6 +131,8 @@ pub(super) struct FoundChain {
 /// How the phases of a model are divided at their jumps, and what else was tried.
 #[derive(Clone)]
 pub(super) struct Divided {
+    /// The model, whose phases know where they may begin.
+    pub written: Model,
     /// All that was solved at once.
     pub whole: Phases,
     /// Of each phase.

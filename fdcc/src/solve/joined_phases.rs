@@ -10,16 +10,15 @@ use fdcc_runtime::problem::{Chain, Problem};
 use fdcc_runtime::solution::phases;
 use fdcc_runtime::solve::{ChainOutcome, Limiting, Outcome};
 
-/// `between` are the phases of the chain that holds between jumps, each with the unknowns of all;
-/// `links` is how many were written.
+/// `between` are the phases of the chain that holds between jumps, each with the unknowns of all.
 pub(super) fn joined(
-    (written, between, links): (&Chain, &[Problem], usize),
+    (chain_between, between, written): (&Chain, &[Problem], &Model),
     of: Alternative,
     found: FoundChain,
 ) -> FoundChain {
     let FoundChain { chain, outcome, step_errors, starts, .. } = found;
     let counts = of.events.iter().map(|it| it.len() + 1);
-    let slices = slices((&of.model, links), &chain, counts);
+    let slices = slices((&of.model, written.links.len()), &chain, counts);
     let (mut problems, mut outcomes, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
     for ((slice, between), events) in slices.iter().zip(between).zip(of.events) {
         let phases = pieces_of(slice, &of.model, (&chain, &outcome));
@@ -28,19 +27,26 @@ pub(super) fn joined(
         outcomes.push(whole);
         pieces.push(Pieces { events, happened, phases });
     }
-    for (problem, own) in problems.iter_mut().zip(&written.phases) {
+    for (problem, own) in problems.iter_mut().zip(&chain_between.phases) {
         problem.unknowns.clone_from(&own.unknowns);
     }
     let all = told(&outcome, outcomes, &slices);
     let whole = Phases { model: of.model, chain, outcome };
     let (sequences, next) = (Vec::new(), Vec::new());
     FoundChain {
-        chain: Chain { phases: problems, ..written.clone() },
+        chain: Chain { phases: problems, ..chain_between.clone() },
         outcome: all,
         step_errors,
         starts,
         others: Vec::new(),
-        divided: Some(Box::new(Divided { whole, pieces, sequences, is_cut: false, next })),
+        divided: Some(Box::new(Divided {
+            written: written.clone(),
+            whole,
+            pieces,
+            sequences,
+            is_cut: false,
+            next,
+        })),
     }
 }
 

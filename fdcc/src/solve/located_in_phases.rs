@@ -29,12 +29,13 @@ pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> S
     let problems = found.chain.phases.iter();
     let problems: Vec<Problem> =
         problems.map(|it| Problem { unknowns: unknowns.clone(), ..it.clone() }).collect();
-    let written = || model.meaning().phases.iter().map(|it| &it.model);
+    let meaning = found.divided.as_ref().map_or(model.meaning(), |it| &it.written);
+    let written = || meaning.phases.iter().map(|it| &it.model);
     let between: Vec<fdcc_compiler::Model> = written().map(between_jumps).collect();
     let own = written().zip(&between).zip(&problems);
     let parts = own.map(|((written, model), problem)| Part { written, model, problem });
     let parts: Vec<Part> = parts.collect();
-    let search = Search { model, found: &found, parts: &parts, options };
+    let search = Search { model, whole: meaning, found: &found, parts: &parts, options };
     match search.certified() {
         Ok(answer) => answer,
         Err(certificate) => Solution::of_phases(model.clone(), found).missed(certificate, options),
@@ -44,6 +45,8 @@ pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> S
 /// What is known before anything is located.
 struct Search<'s> {
     model: &'s Model,
+    /// What it means.
+    whole: &'s fdcc_compiler::Model,
     found: &'s FoundChain,
     parts: &'s [Part<'s>],
     options: &'s Options<'s>,
@@ -64,7 +67,7 @@ impl Search<'_> {
     }
 
     fn certified_from(&self, first: First) -> Result<Solution, Certificate> {
-        let (whole, stop) = (self.model.meaning(), self.options.stop);
+        let (whole, stop) = (self.whole, self.options.stop);
         let mut spent = Spent::default();
         let of = |(at, (part, outcome)): (usize, (&Part, &Outcome))| {
             Whole::of_smoothed(part.model, part.problem, outcome.clone(), self.jumps(at))

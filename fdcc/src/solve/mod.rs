@@ -32,6 +32,7 @@ mod sequences_in_phases;
 mod shown;
 mod simulated_start;
 mod solution;
+mod start_beside;
 mod sweep;
 mod timing;
 pub mod true_optimum;

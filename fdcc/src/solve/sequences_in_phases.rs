@@ -7,14 +7,16 @@ use super::joined_phases::joined;
 use super::multistart::{all_attempts, first_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
 use super::sequence_of_guess::{self, Guessed};
+use super::start_beside;
 use super::tuning::sequences::{MOST_CLIMBS, NEXT, STEPS};
 use crate::error::Error;
 use crate::model::Model;
 use crate::record::Record;
+use crate::simulation_of_phases::SimulationOfPhases;
 use crate::warm_start;
 use fdcc_compiler::{
     Alike, Combination, Sequences, beside, combinations, compile_chain_like, crossings, sequences,
-    with_jumps_in_phases,
+    with_beginnings, with_jumps_in_phases,
 };
 use fdcc_runtime::nlp::Start;
 use fdcc_runtime::problem::{Chain, Problem};
@@ -28,20 +30,32 @@ pub(super) fn solve(
     earlier: Option<&Record>,
     options: &Options,
 ) -> Result<FoundChain, Error> {
-    let phases = || model.meaning().phases.iter().map(|it| &it.model);
+    let motion = simulated(model);
+    let begun: Vec<&fdcc_compiler::Model> =
+        motion.iter().flat_map(|it| &it.models).map(Model::meaning).collect();
+    let written = with_beginnings(model.meaning(), &begun).map_err(Error::Model)?;
+    let phases = || written.phases.iter().map(|it| &it.model);
     let possible: Vec<Sequences> =
         phases().map(sequences).collect::<Result<_, _>>().map_err(Error::Model)?;
+    let is_fit = phases().any(|it| !it.sums.is_empty());
     let between = chain.phases.iter().map(|it| of_whole(chain, it)).collect();
     let mut tried = Tried {
-        subject: Subject { model, chain, between, possible, earlier, options },
+        subject: Subject { model, written, chain, between, possible, earlier, options },
         alike: Alike::default(),
         all: Vec::new(),
         found: Vec::new(),
     };
     // Of measured data what happens near the guess is meant, as what is estimated is.
-    let is_fit = phases().any(|it| !it.sums.is_empty()) && !tried.subject.is_driven();
-    let is_cut = tried.all(is_fit)?;
+    let is_fit = is_fit && !tried.subject.is_driven();
+    let guessed = motion.and_then(|it| tried.subject.happened(it));
+    let is_cut = tried.all(guessed.as_deref(), is_fit)?;
     Ok(tried.answer(is_cut))
+}
+
+/// What the true system does in all phases with everything as a model guesses it.
+fn simulated(model: &Model) -> Option<SimulationOfPhases> {
+    let accuracy = Accuracy { max_steps: STEPS, ..Accuracy::default() };
+    model.simulate_phases(None, &accuracy).ok()
 }
 
 /// A phase with the unknowns of all.
@@ -52,6 +66,8 @@ pub(super) fn of_whole(chain: &Chain, phase: &Problem) -> Problem {
 /// What is solved.
 struct Subject<'s> {
     model: &'s Model,
+    /// The same, whose phases know where they may begin.
+    written: fdcc_compiler::Model,
     /// What holds between the jumps.
     chain: &'s Chain,
     /// Its phases, with the unknowns of all.
@@ -71,12 +87,9 @@ impl Subject<'_> {
         self.chain.phases[0].has_objective
     }
 
-    /// What happens in all phases with everything as a model guesses it; nothing where one does not
-    /// reach its end.
-    fn motion(&self, model: &Model) -> Option<Vec<Guessed>> {
-        let accuracy = Accuracy { max_steps: STEPS, ..Accuracy::default() };
-        let simulated = model.simulate_phases(None, &accuracy).ok()?;
-        let all = simulated.all.into_iter().zip(&self.possible);
+    /// What happens in all phases of a motion; nothing where one does not reach its end.
+    fn happened(&self, motion: SimulationOfPhases) -> Option<Vec<Guessed>> {
+        let all = motion.all.into_iter().zip(&self.possible);
         let all = all.map(|(it, own)| Guessed::of_motion(it.system, it.result, own));
         let all: Vec<Guessed> = all.collect::<Option<_>>()?;
         (all.len() == self.possible.len()).then_some(all)
@@ -90,19 +103,19 @@ impl Subject<'_> {
         for it in &self.chain.unknowns {
             meaning.set_free(&names[it.parameter].name, values[it.parameter]);
         }
-        self.motion(&self.model.with_meaning(meaning))
+        self.happened(simulated(&self.model.with_meaning(meaning))?)
     }
 
     /// The answer of each.
-    fn each(
-        &self,
-        all: &[Alternative],
-        motion: Option<&[Guessed]>,
-        best: f64,
-    ) -> Result<Vec<FoundChain>, Error> {
-        let starts =
-            |it: &Alternative| [self.earlier_start(it), motion.and_then(|own| self.start(own, it))];
+    fn each(&self, all: &[Alternative], from: &From) -> Result<Vec<FoundChain>, Error> {
+        let starts = |it: &Alternative| {
+            let motion = from.motion.and_then(|own| self.start(own, it));
+            let beside = from.beside.filter(|_| motion.is_none());
+            let beside = beside.and_then(|own| start_beside::start(own, it, &self.between[0]));
+            [self.earlier_start(it).or(beside), motion]
+        };
         let (is_driven, has_objective) = (self.is_driven(), self.has_objective());
+        let best = from.beside.map_or(f64::INFINITY, |it| it.1.outcome.solution.objective);
         let solves =
             Solves { starts: &starts, is_driven, has_objective, best, options: self.options };
         alternatives::each(all, &solves)
@@ -139,7 +152,7 @@ impl Subject<'_> {
     }
 
     fn alternative(&self, events: Combination, alike: &mut Alike) -> Result<Alternative, Error> {
-        let meaning = self.model.meaning();
+        let meaning = &self.written;
         let model = with_jumps_in_phases(meaning, &events).map_err(Error::Model)?;
         let chain = compile_chain_like(&model, alike).map_err(Error::Model)?;
         let (mut jumps, mut crosses, mut words) = (Vec::new(), Vec::new(), Vec::new());
@@ -161,6 +174,14 @@ impl Subject<'_> {
     }
 }
 
+/// Where solves begin.
+struct From<'s> {
+    /// At the motion of the true system, where that is near.
+    motion: Option<&'s [Guessed]>,
+    /// Else at the best answer so far, with its jumps.
+    beside: Option<(&'s Combination, &'s FoundChain)>,
+}
+
 /// The combinations that were tried, each with its answer.
 struct Tried<'s> {
     subject: Subject<'s>,
@@ -171,54 +192,63 @@ struct Tried<'s> {
 
 impl Tried<'_> {
     /// Tries what is to be tried, that of the guess first; whether anything is left out.
-    fn all(&mut self, is_fit: bool) -> Result<bool, Error> {
-        let guessed = self.subject.motion(self.subject.model);
-        let motion = guessed.as_deref();
-        let of =
-            |it: &[Guessed]| -> Combination { it.iter().map(|it| it.events.clone()).collect() };
-        let likely = motion.map(of);
-        if let Some(likely) = likely.clone().filter(|_| is_fit) {
-            self.add(vec![likely], motion, f64::INFINITY)?;
+    fn all(&mut self, motion: Option<&[Guessed]>, is_fit: bool) -> Result<bool, Error> {
+        let of = |it: &[Guessed]| it.iter().map(|it| it.events.clone()).collect();
+        let likely: Option<Combination> = motion.map(of);
+        let (mut others, are_more) = combinations(&self.subject.possible);
+        let guess = From { motion, beside: None };
+        let is_cut = are_more || self.subject.possible.iter().any(|it| it.is_cut);
+        if let Some(likely) = likely.clone().filter(|_| is_fit || are_more) {
+            self.add(vec![likely], &guess)?;
             self.climb()?;
             if self.found.iter().any(FoundChain::is_solved) {
-                return Ok(true);
+                return Ok(is_cut || self.all.len() < others.len());
             }
         }
-        let (mut others, is_cut) = combinations(&self.subject.possible);
         others.retain(|it| Some(it) != likely.as_ref());
         let others: Vec<Combination> = likely.into_iter().chain(others).collect();
         let count = others.len();
-        self.add(others, motion, f64::INFINITY)?;
-        if is_cut || !self.subject.is_driven() {
-            self.climb()?;
-        }
+        self.add(others, &guess)?;
+        self.climb()?;
         Ok(is_cut || self.all.len() < count)
     }
 
-    /// Tries more, as long as there is time.
-    fn add(
-        &mut self,
-        combinations: Vec<Combination>,
-        motion: Option<&[Guessed]>,
-        best: f64,
-    ) -> Result<(), Error> {
-        let mut new: Vec<Alternative> = Vec::new();
+    /// Tries more, as long as there is time; once more what was not solved, where there is another
+    /// answer to begin at.
+    fn add(&mut self, combinations: Vec<Combination>, from: &From) -> Result<(), Error> {
+        let (mut new, mut places): (Vec<Alternative>, Vec<Option<usize>>) = Default::default();
         for events in combinations {
             let is_first = self.all.is_empty() && new.is_empty();
             if !is_first && (self.subject.options.stop)().is_break() {
                 break;
             }
-            if self.all.iter().chain(&new).all(|it| it.events != events) {
-                new.push(self.subject.alternative(events, &mut self.alike)?);
+            let known = self.all.iter().position(|it| it.events == events);
+            let is_new = new.iter().all(|it| it.events != events);
+            match known {
+                None if is_new => new.push(self.subject.alternative(events, &mut self.alike)?),
+                Some(at) if is_new && from.beside.is_some() && !self.found[at].is_solved() => {
+                    new.push(self.all[at].clone());
+                }
+                _ => continue,
+            }
+            places.push(known);
+        }
+        let found = self.subject.each(&new, from)?;
+        for ((alternative, found), place) in new.into_iter().zip(found).zip(places) {
+            match place {
+                Some(at) if found.is_solved() => self.found[at] = found,
+                Some(_) => {}
+                None => {
+                    self.all.push(alternative);
+                    self.found.push(found);
+                }
             }
         }
-        self.found.extend(self.subject.each(&new, motion, best)?);
-        self.all.extend(new);
         Ok(())
     }
 
-    /// One jump more or less in one of the phases of the best answer, and what happens with its
-    /// unknowns, as long as that is better.
+    /// One jump more or less in one of the phases of the best answer, or in the next phase, and
+    /// what happens with its unknowns, as long as that is better.
     fn climb(&mut self) -> Result<(), Error> {
         for _ in 0..MOST_CLIMBS {
             let is_any = self.found.iter().any(FoundChain::is_solved);
@@ -226,13 +256,14 @@ impl Tried<'_> {
                 return Ok(());
             }
             let (best, _) = best_and_next(&self.found);
-            let motion = self.subject.motion_with(&self.found[best]);
-            let motion = motion.filter(|_| !self.subject.is_driven());
+            let subject = &self.subject;
+            let motion = subject.motion_with(&self.found[best]).filter(|_| !subject.is_driven());
             let own = motion.iter().map(|it| it.iter().map(|it| it.events.clone()).collect());
-            let near = beside(&self.subject.possible, &self.all[best].events);
+            let near = beside(&subject.written, &subject.possible, &self.all[best].events);
             let new = own.chain(near).collect();
-            let so_far = self.found[best].outcome.solution.objective;
-            self.add(new, motion.as_deref(), so_far)?;
+            let (events, answer) = (self.all[best].events.clone(), self.found[best].clone());
+            let from = From { motion: motion.as_deref(), beside: Some((&events, &answer)) };
+            self.add(new, &from)?;
             if best_and_next(&self.found).0 == best {
                 return Ok(());
             }
@@ -250,7 +281,7 @@ impl Tried<'_> {
         }
         let outcomes = found.iter().map(|it| &it.outcome);
         let (attempts, stopped) = (all_attempts(outcomes.clone()), first_stopped(outcomes));
-        let subject = (subject.chain, &subject.between[..], subject.model.meaning().links.len());
+        let subject = (subject.chain, &subject.between[..], &subject.written);
         let answer = |at: usize, next: Vec<FoundChain>| {
             let tried = all.iter().zip(&found).enumerate();
             let tried = tried.map(|(other, (it, found))| it.tried(found, other == at));

@@ -86,6 +86,9 @@ pub(super) mod sequences {
     pub(crate) const NEXT: usize = 2;
     /// The best sequence is lengthened or shortened at its end so often.
     pub(crate) const MOST_CLIMBS: usize = 6;
+    /// A jump that is moved over a link happens so near to it, for the length of the piece next to
+    /// it.
+    pub(crate) const NEAR_LINK: f64 = 0.02;
     /// A guess is not worth more steps of a simulation.
     pub(crate) const STEPS: usize = 20_000;
     /// More are not looked for where the guess leads to that many.

@@ -17,6 +17,7 @@
 //! A control may have an *arc*: it is at one of its bounds throughout a phase. So may a state or a
 //! path condition: `limits`.
 
+mod begun;
 mod departures;
 mod ends;
 mod hamiltonian;
@@ -30,6 +31,7 @@ mod links;
 mod phase;
 mod starts;
 
+pub use begun::with_beginnings;
 pub use departures::{is_uncontrolled, may_hold};
 pub use hamiltonian::{Point, hamiltonian};
 pub use hold_normals::{HoldNormals, NormalsAt};

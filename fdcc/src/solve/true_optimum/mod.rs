@@ -323,9 +323,9 @@ impl Located {
         own.max(PART_AT_REST * self.largest_size())
     }
 
-    /// That of the Hamiltonian where it is largest.
+    /// That of the Hamiltonian where it is largest, in all phases of a model.
     fn largest_size(&self) -> f64 {
-        let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
+        let sizes = self.joint.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
         sizes.fold(0.0, f64::max)
     }
 

@@ -44,6 +44,7 @@ pub(super) fn solve(
         alike: Alike::default(),
         all: Vec::new(),
         found: Vec::new(),
+        twice: Vec::new(),
     };
     // Of measured data what happens near the guess is meant, as what is estimated is.
     let is_fit = is_fit && !tried.subject.is_driven();
@@ -188,6 +189,8 @@ struct Tried<'s> {
     alike: Alike,
     all: Vec<Alternative>,
     found: Vec<FoundChain>,
+    /// Those that were begun at another answer, after all that was tried of them had found nothing.
+    twice: Vec<usize>,
 }
 
 impl Tried<'_> {
@@ -226,7 +229,8 @@ impl Tried<'_> {
             let is_new = new.iter().all(|it| it.events != events);
             match known {
                 None if is_new => new.push(self.subject.alternative(events, &mut self.alike)?),
-                Some(at) if is_new && from.beside.is_some() && !self.found[at].is_solved() => {
+                Some(at) if is_new && from.beside.is_some() && self.may_be_found(at) => {
+                    self.twice.push(at);
                     new.push(self.all[at].clone());
                 }
                 _ => continue,
@@ -245,6 +249,11 @@ impl Tried<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether it was not solved, and never begun at an answer.
+    fn may_be_found(&self, at: usize) -> bool {
+        !self.found[at].is_solved() && !self.twice.contains(&at)
     }
 
     /// One jump more or less in one of the phases of the best answer, or in the next phase, and

@@ -216,8 +216,44 @@ minimize integral(lift.u^2)";
     assert_eq!(jumps(&solution), ["fall.bounce", "fall.bounce"]);
 }
 
-/// Where there are more combinations than are tried, the search begins at that of the guess. Over the
-/// power the objective has several minima, of exponentials; near 11 it falls to that of all jumps.
+/// A link is the first bounce, so that the phase behind it begins on the surface of its jump.
+#[test]
+fn a_phase_begins_on_the_surface_of_its_jump() {
+    let text = "
+param e = 0.8
+free T in [0.1, 2] guess 0.5
+free T2 in [0.1, 3] guess 1
+free vx in [0, 10] guess 1
+phase fall {
+  time t in [0, T]
+  state x start 0
+  state h start 1
+  state v start 0
+  dynamics { x' = vx  h' = v  v' = -9.81 }
+  end h == 0
+}
+phase rise like fall {
+  time t in [T, T + T2]
+  surface ground = h
+  jump bounce on ground falling at most 2 { v := -e*v }
+  end h == 0.3
+  end x == 1
+}
+link fall -> rise { same  v := -e*v }
+minimize vx^2 + T2";
+    let solution = certified(text);
+    let (g, e) = (9.81_f64, 0.8);
+    let speed = (2.0 * g).sqrt();
+    let again = e * e * speed;
+    let last = 2.0 * e * speed / g + (again - (again * again - 0.6 * g).sqrt()) / g;
+    near(solution.objective(), (speed / g + last).powi(-2) + last);
+    assert_eq!(jumps(&solution), ["rise.bounce"]);
+    let none = solution.sequences.iter().find(|it| it.words == "no jump").expect("it is tried");
+    assert!(none.ended.is_solved && none.crosses.is_empty(), "it begins there and goes up");
+}
+
+/// Where there are more combinations than are tried, the search begins at that of the guess. Over
+/// the power the objective has several minima; from 11 it falls to that of all jumps.
 #[test]
 fn of_many_sequences_the_search_begins_at_that_of_the_guess() {
     let heater = "

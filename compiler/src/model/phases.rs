@@ -16,9 +16,9 @@ pub struct Phase {
     /// What holds in it, with its part of the objective and all conditions that read no other
     /// phase.
     pub model: Model,
-    /// Whether its path conditions hold at its first point, too: not where a jump of the state puts
-    /// it on the surface that they are about.
-    pub holds_at_first: bool,
+    /// So many of its path conditions, the first ones, hold at its first point, too: none where a
+    /// jump of the state puts it on the surface that they are about.
+    pub hold_at_first: usize,
 }
 
 /// Conditions between phases, over the symbols of the whole.

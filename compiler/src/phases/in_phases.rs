@@ -35,7 +35,8 @@ pub fn with_jumps_in_phases(
             match j {
                 0 => {
                     piece.place.clone_from(&written.place);
-                    piece.holds_at_first = written.holds_at_first;
+                    // On which side of a surface it begins, links say.
+                    piece.hold_at_first = written.hold_at_first.min(written.model.path.len());
                 }
                 _ => piece.place.name = format!("{}.{}", written.place.name, piece.place.name),
             }
@@ -101,7 +102,7 @@ impl<'m> Chain<'m> {
         }
         if divided.phases.is_empty() {
             let place = self.written.phases[phase].place.clone();
-            self.phases.push(Phase { place, model: divided, holds_at_first: false });
+            self.phases.push(Phase { place, model: divided, hold_at_first: 0 });
         } else {
             self.phases.extend(divided.phases);
         }

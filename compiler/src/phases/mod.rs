@@ -173,7 +173,7 @@ impl<'m> MultiPhase<'m> {
             .map(|j| Phase {
                 place: self.named(j),
                 model: self.phase(j, &shares),
-                holds_at_first: false,
+                hold_at_first: 0,
             })
             .collect();
         let mut links: Vec<_> = (0..self.sequence.len()).map(|j| self.link(j)).collect();

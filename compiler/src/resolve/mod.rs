@@ -111,7 +111,7 @@ impl Elaborator<'_> {
         };
         let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
         let phase = |inner: Inner<'_>| Phase {
-            holds_at_first: true,
+            hold_at_first: usize::MAX,
             place: Place { name: inner.name.name.clone(), span: inner.name.span },
             model: Model { name: inner.name.name.clone(), ..inner.meaning.into_model() },
         };

@@ -81,7 +81,7 @@ fn ends(
     let own = &model.phases[phase].model;
     let numbers = numbers(own)?;
     let mut known = Vec::new();
-    for row in &own.path {
+    for row in own.path.iter().chain(&own.boundary) {
         let bounds = numbers.bounds(own, row.range);
         let value = linked.at_end(model, phase, (&own.graph, row.value));
         known.push((value, Interval::new(bounds.lower, bounds.upper)));

@@ -8,7 +8,7 @@ use super::multistart::{all_attempts, first_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
 use super::sequence_of_guess::{self, Guessed};
 use super::start_beside;
-use super::tuning::sequences::{MOST_CLIMBS, NEXT, STEPS};
+use super::tuning::sequences::{CLIMB, MOST_CLIMBS, NEXT, STEPS};
 use crate::error::Error;
 use crate::model::Model;
 use crate::record::Record;
@@ -273,7 +273,9 @@ impl Tried<'_> {
             let (events, answer) = (self.all[best].events.clone(), self.found[best].clone());
             let from = From { motion: motion.as_deref(), beside: Some((&events, &answer)) };
             self.add(new, &from)?;
-            if best_and_next(&self.found).0 == best {
+            let next = &self.found[best_and_next(&self.found).0].outcome.solution;
+            let own = answer.outcome.solution.objective;
+            if own - next.objective <= CLIMB * own.abs() {
                 return Ok(());
             }
         }

@@ -346,3 +346,54 @@ link one -> two { same }";
     assert_eq!(document["status"], "not_finite");
     assert_eq!(document["phases"].as_object().map(serde_json::Map::len), Some(1));
 }
+
+/// A ball that bounces in the first of two phases: what is said of it, its files, a replay of these
+/// and a start from them.
+#[test]
+fn jumps_of_phases_are_told_written_and_begun_at() {
+    let text = "model windy
+free T in [0.3, 3] guess 1
+free vx in [0, 20] guess 4
+free vy in [-10, 10] guess 1
+phase air {
+  time t in [0, T]
+  state x start 0
+  state h start 1.5
+  state v start vy
+  surface ground = h
+  dynamics { x' = vx  h' = v  v' = -9.81 }
+  path over: h >= 0
+  jump bounce on ground falling at most 1 { v := -0.8*v }
+}
+phase wind like air {
+  time t in [T, T + 0.5]
+  dynamics { x' = vx - 1 }
+}
+link air -> wind { same }
+end wind.x == 6
+end wind.h == 1
+minimize vx^2 + vy^2
+";
+    let folder = folder("phases_jumps", &[("windy.fdc", text.as_bytes())]);
+    let output = fdcc(&folder, &["solve", "windy.fdc", "--out", "."], "");
+    expect_exit(&output, 0, &stderr(&output));
+    let words = stdout(&output);
+    assert!(words.contains("1 jump located"), "{words}");
+    assert!(words.contains(" jumps air.bounce at t = 0.90478\n"), "{words}");
+    assert!(words.contains("       wind.bounce: objective "), "{words}");
+    let read = |name: &str| std::fs::read_to_string(folder.join(name)).expect("it was written");
+    let document: Value = serde_json::from_str(&read("windy.sol.json")).expect("it is JSON");
+    let jump = &document["phases"]["air"]["jumps"][0];
+    assert_eq!(jump["jump"], "bounce");
+    let [before, after] = ["before", "after"].map(|side| number(&jump[side]["v"]));
+    assert!((after + 0.8 * before).abs() < 1e-9 && after > 0.0, "{before} {after}");
+    assert_eq!(document["phases"]["wind"].get("jumps"), None);
+    assert_eq!(document["sequences"][0]["jumps"], serde_json::json!(["air.bounce"]));
+    assert!(read("windy.html").contains("<td>air.bounce</td>"));
+    let replay = fdcc(&folder, &["verify", "windy.sol.json", "windy.fdc"], "");
+    expect_exit(&replay, 0, &stderr(&replay));
+    assert!(stdout(&replay).contains("time of bounce"), "{}", stdout(&replay));
+    let again = fdcc(&folder, &["solve", "windy.fdc", "--warm", "windy.sol.json", "--json"], "");
+    let again = json(&again);
+    assert!((number(&again["objective"]) - 24.0315807218).abs() < 1e-6);
+}

@@ -42,8 +42,9 @@ pub use kinks::{Kinks, is_kink, parameters_on_kinks, side_of, without_kinks};
 pub use lower::{Expected, LoweredProblem};
 pub use model::{Along, Border, Model, Phase, Plane, Plot, Switch};
 pub use phases::{
-    Arc, Course, Ends, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Sequences, Slopes,
-    between_jumps, crossings, ends_at, hamiltonian, is_uncontrolled, limits, may_hold, sequences,
+    Arc, Combination, Course, Ends, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point,
+    Sequences, Slopes, beside, between_jumps, combinations, crossings, ends_at, hamiltonian,
+    is_uncontrolled, limits, may_hold, sequences, with_beginnings, with_jumps_in_phases,
     with_modes, with_modes_in_phases, with_phases, with_times,
 };
 pub use settings::is_key as is_method_key;

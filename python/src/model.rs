@@ -221,7 +221,10 @@ impl Model {
         let stop = || watch.check();
         let options = Options { starts, start, report: &told, stop: &stop, ..Options::default() };
         // A thread of its own costs as much as half of a short solve.
-        let is_short = starts == 1 && model.meaning().jumps.is_empty();
+        let meaning = model.meaning();
+        let mut phases = meaning.phases.iter().map(|it| &it.model);
+        let jumps = !meaning.jumps.is_empty() || phases.any(|it| !it.jumps.is_empty());
+        let is_short = starts == 1 && !jumps;
         let found = match is_short {
             true => py.detach(|| model.solve(&options)),
             false => watch.aside(py, || model.solve(&options)),

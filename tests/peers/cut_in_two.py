@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Models of tests/classics/switched, cut into two phases: `cut_in_two.py target/release/fdcc 0.37 0.61`.
 
-Time is cut at each of the parts that are named; states, controls and the objective stand outside of both phases, surfaces, equations
-and path conditions in them. Nothing else changes, so that the optimum is that of the whole model, in true_optimum.csv beside this
-file. Prints a line for each model that is not certified, or certified at another objective, and counts; the exit code is 1 if
-any is certified at another objective. Models with jumps, and those in which something outside reads the time or a surface, are
-left out.
+Time is cut at each of the parts that are named; states, controls and the objective stand outside of both phases, surfaces, equations,
+path conditions and jumps in them. Nothing else changes, so that the optimum is that of the whole model, in true_optimum.csv beside
+this file; but `at most` counts anew in each phase, so that more jumps may be better. Prints a line for each model that is not
+certified, or certified at another objective, and counts; the exit code is 1 if any without `at most` is certified at another
+objective. Models in which something outside reads the time or a surface are left out.
 """
 
 import csv
@@ -18,8 +18,8 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 MODELS = HERE.parent / 'classics' / 'switched'
-WITHIN = ('surface', 'dynamics', 'path')
-WHOLE = ('jump', 'phase', 'link', 'at', 'sweep', 'fit', 'data')
+WITHIN = ('surface', 'dynamics', 'path', 'jump')
+WHOLE = ('phase', 'link', 'at', 'sweep', 'fit', 'data')
 SAME = 1e-6
 
 
@@ -78,11 +78,11 @@ def main(fdcc, parts):
                 counts['cut'] += 1
                 counts['certified'] += certificate['certified']
                 counts['other'] += certificate['certified'] and is_other
+                is_wrong |= certificate['certified'] and is_other and 'at most' not in text
                 if is_other or not certificate['certified']:
                     failed = ', '.join(it['check'] for it in certificate['checks'] if not it['passes'])
                     print(part, path.stem, found['status'], found['objective'], objective, failed, flush=True)
             print(part, *(f'{count} {word}' for word, count in counts.items()), flush=True)
-            is_wrong |= counts['other'] > 0
     return int(is_wrong)
 
 

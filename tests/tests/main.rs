@@ -43,6 +43,7 @@ mod holds;
 mod hostile;
 mod jumps;
 mod jumps_in_chains;
+mod jumps_in_phases;
 mod junctions;
 mod kinks;
 mod kinks_in_phases;

@@ -1,7 +1,9 @@
 //! A model with phases as a chain of problems: what each phase depends on, and what ties them
 //! together, by hand.
 
-use fdcc_compiler::{Model, analyze, chain_expectations, compile_chain, integrands};
+use fdcc_compiler::{
+    Model, analyze, chain_expectations, compile_chain, integrands, with_jumps_in_phases,
+};
 use fdcc_runtime::problem::{Bounds, Chain, Columns, End, Function, Link};
 
 fn model(text: &str) -> Model {
@@ -277,8 +279,9 @@ minimize push^2";
     assert_eq!(values(&*link.function, &[3.0, 5.0], &[0.5]), [0.25, 5.0 - 3.5]);
 }
 
+/// The first phase ends where `x = 0` and begins again at 1; only its own pieces know of that time.
 #[test]
-fn a_jump_within_a_phase_waits() {
+fn a_jump_cuts_its_phase_in_two() {
     let text = "
 phase a {
   time t in [0, 1]
@@ -286,9 +289,19 @@ phase a {
   surface low = x
   dynamics { x' = -3 }
   jump up on low falling { x := 1 }
-}";
-    let found = compile_chain(&model(text)).err().expect("it is refused");
-    assert_eq!(found[0].message, "a jump within a phase cannot be solved yet");
+}
+phase b { time t in [1, 2]  state x  dynamics { x' = x } }
+link a -> b { x := 2*x }";
+    let cut = with_jumps_in_phases(&model(text), &[vec![0], vec![]]).expect("it is cut");
+    let names: Vec<&str> = cut.phases.iter().map(|it| it.place.name.as_str()).collect();
+    assert_eq!(names, ["a", "a.up", "b"]);
+    let chain = compile_chain(&cut).expect("it can be solved");
+    assert_eq!([0, 1, 2].map(|at| unknowns(&chain, at).len()), [1, 1, 0]);
+    let [jump, link] = &chain.links[..] else { panic!("{} links", chain.links.len()) };
+    assert_eq!(jump.ends, [End::Last(0), End::First(1)]);
+    // Integrals of a phase are those of all of its pieces.
+    assert_eq!(link.ends, [End::Last(0), End::Last(1), End::First(2)]);
+    assert_eq!(values(&*link.function, &[7.0, 3.0, 5.0], &[0.5])[1], 5.0 - 2.0 * 3.0);
 }
 
 /// Two vectors; the second phase takes over everything but what it says itself.

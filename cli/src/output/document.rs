@@ -290,8 +290,8 @@ fn measured(status: &Status, error: f64) -> f64 {
 
 /// Whether nothing switches and nothing jumps, in any of its phases.
 fn is_smooth(found: &Solution) -> bool {
-    let mut switching = found.phases().iter().chain([found]).map(|it| &it.problem.surfaces);
-    switching.all(Vec::is_empty) && found.model().meaning().jumps.is_empty()
+    let mut all = found.phases().iter().chain([found]);
+    all.all(|it| it.problem.surfaces.is_empty() && it.model().meaning().jumps.is_empty())
 }
 
 /// By the words that the outputs of a function have in the model, from the first on that counts.

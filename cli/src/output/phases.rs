@@ -6,6 +6,7 @@ use super::modes::Span;
 use super::named::Named;
 use super::picture::{Before, PathCondition};
 use super::plots::Drawn;
+use super::tried::Happened;
 use super::verification::Verification;
 use serde::{Serialize, Serializer};
 
@@ -33,6 +34,8 @@ struct Shown<'d> {
     hamiltonian_check: &'d HamiltonianCheck,
     report: &'d Named<Vec<f64>>,
     surfaces: &'d Named<Vec<Span>>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    jumps: &'d [Happened],
     sigmas: &'d Named<f64>,
     bounds: &'d Named<[f64; 2]>,
     #[serde(skip_serializing_if = "Named::is_empty")]
@@ -41,6 +44,16 @@ struct Shown<'d> {
     plots: &'d Named<Drawn>,
     #[serde(skip_serializing_if = "Option::is_none")]
     verification: Option<&'d Verification>,
+}
+
+impl Document {
+    /// The jumps and when they happen; those of phases have the name of the phase before theirs.
+    pub fn all_jumps(&self) -> Vec<(String, f64)> {
+        let of_phases = self.phases.0.iter().flat_map(|(phase, it)| {
+            it.0.jumps.iter().map(move |jump| (format!("{phase}.{}", jump.jump), jump.time))
+        });
+        self.jumps.iter().map(|it| (it.jump.clone(), it.time)).chain(of_phases).collect()
+    }
 }
 
 impl Serialize for Phase {
@@ -61,6 +74,7 @@ impl Serialize for Phase {
             hamiltonian_check: &of.hamiltonian_check,
             report: &of.report,
             surfaces: &of.surfaces,
+            jumps: &of.jumps,
             sigmas: &of.method.sigmas,
             bounds: &of.picture.bounds,
             path: &of.picture.path,

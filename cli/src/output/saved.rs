@@ -46,6 +46,8 @@ struct SavedPhase {
     controls: Named<Column>,
     #[serde(default)]
     control_nodes: Option<SavedNodes>,
+    #[serde(default)]
+    jumps: Vec<SavedJump>,
 }
 
 /// A jump of a solution.
@@ -128,16 +130,14 @@ impl Saved {
     fn check(&self) -> Result<(), String> {
         are_numbers("free", &self.free)?;
         are_numbers("params", &self.params)?;
-        let jumps = Twice::At(self.jumps.iter().map(|jump| jump.time.0).collect());
-        signals(String::new(), jumps, (&self.time, &self.states, &self.controls)).check()?;
+        signals(String::new(), twice(&self.jumps), (&self.time, &self.states, &self.controls))
+            .check()?;
         for (name, phase) in &self.phases.0 {
             let own = (&phase.time, &phase.states, &phase.controls);
             signals(format!("phases.{name}."), Twice::Any, own).check()?;
+            are_states(&format!("phases.{name}."), &phase.jumps)?;
         }
-        for (at, jump) in self.jumps.iter().enumerate() {
-            are_numbers(&format!("jumps[{at}].before"), &jump.before)?;
-        }
-        Ok(())
+        are_states("", &self.jumps)
     }
 
     /// Nothing if it is no number.
@@ -184,7 +184,7 @@ impl Saved {
             states: columns(&of.states),
             controls: columns(&of.controls),
             nodes: nodes.map(|it| NodesRecord { time: &it.time.0, values: columns(&it.values) }),
-            jumps: Vec::new(),
+            jumps: of.jumps.iter().map(jump).collect(),
             phases: Vec::new(),
         }
     }
@@ -210,6 +210,19 @@ fn are_numbers(field: &str, of: &Named<Number>) -> Result<(), String> {
         Some((name, _)) => Err(format!("`{field}.{name}` is no number")),
         None => Ok(()),
     }
+}
+
+/// Those before jumps.
+fn are_states(prefix: &str, jumps: &[SavedJump]) -> Result<(), String> {
+    let state = |(at, jump): (usize, &SavedJump)| {
+        are_numbers(&format!("{prefix}jumps[{at}].before"), &jump.before)
+    };
+    jumps.iter().enumerate().try_for_each(state)
+}
+
+/// A time may stand twice where something jumps.
+fn twice(jumps: &[SavedJump]) -> Twice {
+    Twice::At(jumps.iter().map(|jump| jump.time.0).collect())
 }
 
 fn signals<'s>(

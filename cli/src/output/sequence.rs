@@ -21,8 +21,9 @@ pub fn of(document: &Document) -> Sequence {
     let arcs = arcs.map(|(name, spans)| (name.clone(), spans));
     let words = |(name, spans): (String, &Vec<Span>)| (name, order(spans));
     let mut all: Vec<_> = own.chain(in_phases).chain(arcs).map(words).collect();
-    if !document.jumps.is_empty() {
-        all.push(("jumps".into(), document.jumps.iter().map(|it| it.jump.clone()).collect()));
+    let jumps: Vec<String> = document.all_jumps().into_iter().map(|it| it.0).collect();
+    if !jumps.is_empty() {
+        all.push(("jumps".into(), jumps));
     }
     Named(all)
 }

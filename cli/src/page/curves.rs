@@ -3,6 +3,7 @@
 
 use super::figures::{Curve, Figure, Kind};
 use super::json::{Json, NULL};
+use super::located::all_jumps;
 use super::sizes::OF_OWN;
 use super::units::of_time;
 
@@ -130,10 +131,11 @@ fn values_before(document: &Json, curve: &Curve, time: &[f64]) -> Vec<(usize, f6
 
 /// Whether a polynomial control may jump between two of its times.
 fn jumps(document: &Json, curve: &Curve, [from, to]: [f64; 2]) -> bool {
-    let all = [document.at("jumps"), document.at("certificate").at("switches")];
-    let times = all.iter().flat_map(|it| it.list()).filter_map(|it| it.at("time").number());
+    let switches = document.at("certificate").at("switches").list().iter();
+    let all = all_jumps(document).into_iter().map(|it| it.1).chain(switches);
+    let mut times = all.filter_map(|it| it.at("time").number());
     let is_polynomial = curve.values.iter().any(|it| it == "control_nodes");
-    is_polynomial && times.into_iter().any(|time| from < time && time < to)
+    is_polynomial && times.any(|time| from < time && time < to)
 }
 
 /// Where a plot begins and ends: flat where values differ by nothing but rounding (`sizes.rs`); a

@@ -4,6 +4,7 @@ use super::arrays::{Array, arrays};
 use super::colours::COLOURS;
 use super::figures::{Figure, figures, parts};
 use super::json::Json;
+use super::located::all_jumps;
 use super::plots::{Portrait, portraits};
 use super::runs::events;
 use super::strips::{Strip, strips};
@@ -86,9 +87,7 @@ fn marks(document: &Json) -> Vec<Moment> {
         let what = format!("{surface}: {from} to {to}");
         Some(Moment { time: it.at("time").number()?, what })
     };
-    let jump = |it: &Json| {
-        Some(Moment { time: it.at("time").number()?, what: it.at("jump").text().into() })
-    };
+    let jump = |(what, it): (String, &Json)| Some(Moment { time: it.at("time").number()?, what });
     let phase = |(name, it): &(String, Json)| {
         let time = *it.at("time").column().first()?;
         Some(Moment { time, what: name.clone() })
@@ -100,6 +99,6 @@ fn marks(document: &Json) -> Vec<Moment> {
     };
     let events = events(document);
     let events = events.iter().filter_map(event);
-    let jumps = document.at("jumps").list().iter().filter_map(jump);
+    let jumps = all_jumps(document).into_iter().filter_map(jump);
     jumps.chain(events).chain(phases).chain(switches.iter().filter_map(switch)).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::impulses::impulses;
 use super::json::Json;
+use super::located::all_jumps;
 use super::moves::moves;
 use super::runs;
 use super::tags::{Cell, escape, section, table};
@@ -88,7 +89,7 @@ fn sensitivities(document: &Json) -> String {
 }
 
 fn jumps(document: &Json) -> String {
-    let row = |it: &Json| {
+    let row = |(name, it): &(String, &Json)| {
         let time = it.at("time").number().unwrap_or(f64::NAN);
         let state = |side: &str| {
             let pairs = it.at(side).pairs().iter().map(|(name, value)| {
@@ -98,9 +99,9 @@ fn jumps(document: &Json) -> String {
             Cell::text(pairs.collect::<Vec<_>>().join(", "))
         };
         let time = Cell::Number(of_time(document).value(time, 7));
-        vec![Cell::text(it.at("jump").text()), time, state("before"), state("after")]
+        vec![Cell::text(name), time, state("before"), state("after")]
     };
-    let rows: Vec<_> = document.at("jumps").list().iter().map(row).collect();
+    let rows: Vec<_> = all_jumps(document).iter().map(row).collect();
     table("Jumps", &["jump", "time", "before", "after"], &rows)
 }
 

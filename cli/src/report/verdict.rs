@@ -184,7 +184,7 @@ fn how(solved: &Solved) -> String {
         true => "local optimum",
     };
     if let Some(certificate) = certificate {
-        return certificate.headline(found, problem.has_objective, solution.jumps.len());
+        return certificate.headline(found, problem.has_objective, document.all_jumps().len());
     }
     let status = &outcome.solution.status;
     let of = first_solved(document);

@@ -140,12 +140,15 @@ impl Model {
 /// What `solve` will refuse. To `check` it is no mistake: the model is right, and waits.
 fn told_early(model: &Model) -> Option<Diagnostic> {
     let written = || model.not_yet.first().cloned();
-    let by_all = written().or_else(|| model.jump_in_phase()).or_else(|| model.rows_beside_jumps());
+    let by_all = written().or_else(|| model.rows_beside_jumps());
     // Where nothing is minimised, the model may be there to be simulated.
-    let by_solve = || model.jump_by_side().filter(|_| model.objective.is_some());
+    let by_solve = || model.jump_by_side().filter(|_| model.has_objective());
     let (mut first, help) = match by_all {
         Some(found) => (found, "`solve`, `simulate` and `grad` refuse it"),
-        None => (by_solve()?, "`simulate` and `grad` take it, `solve` refuses it"),
+        None if model.phases.is_empty() => {
+            (by_solve()?, "`simulate` and `grad` take it, `solve` refuses it")
+        }
+        None => (by_solve()?, "`simulate` takes it, `solve` refuses it"),
     };
     first.severity = Severity::Advice;
     Some(first.help(format!("it is checked all the same; {help}")))

@@ -50,7 +50,7 @@ impl ChainCode {
     }
 
     fn like(model: &Model, alike: &mut Alike) -> Result<Self, Vec<Diagnostic>> {
-        if let Some(first) = model.not_yet.first().cloned().or_else(|| model.jump_in_phase()) {
+        if let Some(first) = model.not_yet.first().cloned() {
             return Err(vec![first]);
         }
         if model.phases.is_empty() {

@@ -30,7 +30,9 @@ use crate::expressions::graph::builtins::Builtin;
 use crate::expressions::graph::{ExprId, Graph, evaluate};
 use crate::model::numbers::numbers;
 use crate::model::phases::Symbols;
-use crate::model::{Constraint, Control, Free, Integral, Model, Place, Range, Surface, Symbol};
+use crate::model::{
+    Begins, Constraint, Control, Free, Integral, Model, Place, Range, Surface, Symbol,
+};
 use bent::Bent;
 pub use of_parameters::parameters_on_kinks;
 
@@ -274,7 +276,9 @@ impl Without {
                 self.own.frees.push(Free { place, range, guess: None });
                 self.own.boundary.push(row);
             }
-            Kind::Surface | Kind::Timed => self.own.surfaces.push(Surface { place, psi: e }),
+            Kind::Surface | Kind::Timed => {
+                self.own.surfaces.push(Surface { place, psi: e, begins: Begins::default() })
+            }
         }
         value
     }

@@ -8,7 +8,7 @@ use super::function::{Order, VectorFunction};
 use super::links::LoweredLink;
 use super::{LoweredProblem, origin};
 use crate::expressions::graph::{ById, ExprId, Graph};
-use crate::model::{Constraint, Model, Symbol};
+use crate::model::{Constraint, Model, Phase, Symbol};
 use fdcc_runtime::problem::{End, Layout};
 
 /// One link for each phase with such conditions.
@@ -19,7 +19,7 @@ pub(super) fn links(
 ) -> Vec<LoweredLink> {
     let is_linked =
         |phase: usize| model.links.iter().any(|it| it.ends.contains(&End::First(phase)));
-    let asks = |phase: &usize| model.phases[*phase].holds_at_first && is_linked(*phase);
+    let asks = |phase: &usize| model.phases[*phase].hold_at_first > 0 && is_linked(*phase);
     let later = (1..phases.len()).filter(asks);
     later.filter_map(|phase| link(model, phase, phases[phase], graph)).collect()
 }
@@ -30,9 +30,9 @@ fn link(
     lowered: &LoweredProblem,
     graph: &mut Graph,
 ) -> Option<LoweredLink> {
-    let own = &model.phases[phase].model;
+    let Phase { model: own, hold_at_first, .. } = &model.phases[phase];
     let rows: Vec<Constraint> =
-        own.path.iter().filter(|row| is_of_state(own, row)).cloned().collect();
+        own.path.iter().take(*hold_at_first).filter(|row| is_of_state(own, row)).cloned().collect();
     if rows.is_empty() {
         return None;
     }

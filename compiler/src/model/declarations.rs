@@ -91,6 +91,23 @@ pub struct Surface {
     pub place: Place,
     /// The switching function, whose sign decides.
     pub psi: ExprId,
+    /// Of a phase, where that may be at the first time by what links say.
+    pub begins: Begins,
+}
+
+/// The function of a surface at the first time of a phase.
+#[derive(Clone, Copy, Debug)]
+pub struct Begins {
+    /// The least and the largest value.
+    pub range: [f64; 2],
+    /// As it is guessed, where phases before lead to that.
+    pub guess: Option<f64>,
+}
+
+impl Default for Begins {
+    fn default() -> Self {
+        Begins { range: [f64::NEG_INFINITY, f64::INFINITY], guess: None }
+    }
 }
 
 /// The vector of a `Dir`: the length of `s` is at most 1, and `s = psi/|psi|` off 0.

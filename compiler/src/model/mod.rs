@@ -26,8 +26,8 @@ mod unsolved;
 pub use along::Along;
 pub(crate) use at_times::{Instant, between_times};
 pub use declarations::{
-    AtTime, Ball, Constraint, Control, Definition, Free, Integral, Jump, Param, Place, Range,
-    Signal, State, Surface, Swept,
+    AtTime, Ball, Begins, Constraint, Control, Definition, Free, Integral, Jump, Param, Place,
+    Range, Signal, State, Surface, Swept,
 };
 pub use measured::Sum;
 pub(crate) use measured::by_row;

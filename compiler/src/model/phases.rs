@@ -16,9 +16,9 @@ pub struct Phase {
     /// What holds in it, with its part of the objective and all conditions that read no other
     /// phase.
     pub model: Model,
-    /// Whether its path conditions hold at its first point, too: not where a jump of the state puts
-    /// it on the surface that they are about.
-    pub holds_at_first: bool,
+    /// So many of its path conditions, the first ones, hold at its first point, too: none where a
+    /// jump of the state puts it on the surface that they are about.
+    pub hold_at_first: usize,
 }
 
 /// Conditions between phases, over the symbols of the whole.
@@ -91,6 +91,13 @@ impl Model {
     /// The symbols of the graph, to be added to.
     pub(crate) fn symbols_mut(&mut self) -> Symbols<'_> {
         Symbols { graph: &mut self.graph, symbols: &mut self.symbols }
+    }
+
+    /// Whether something is minimised, in a phase or a link as well.
+    pub(crate) fn has_objective(&self) -> bool {
+        self.objective.is_some()
+            || self.phases.iter().any(|it| it.model.objective.is_some())
+            || self.links.iter().any(|it| it.objective.is_some())
     }
 
     /// Gives a phase the parameters and unknowns of the whole.

@@ -6,15 +6,14 @@ use crate::expressions::graph::ExprId;
 use fdcc_grammar::Diagnostic;
 
 impl Model {
-    /// A jump within a phase.
-    pub(crate) fn jump_in_phase(&self) -> Option<Diagnostic> {
-        let jump = self.phases.iter().find_map(|phase| phase.model.jumps.first())?;
-        Some(not_yet(jump.place.span, "a jump within a phase"))
+    /// Measured data beside jumps, of which the objective is no sum: a row may be in any of the
+    /// pieces between them.
+    pub(crate) fn rows_beside_jumps(&self) -> Option<Diagnostic> {
+        let of_phases = self.phases.iter().find_map(|phase| phase.model.rows_beside_jumps());
+        of_phases.or_else(|| self.own_rows_beside_jumps())
     }
 
-    /// Measured data beside jumps, of which the objective is no sum: a row may be in any of the
-    /// phases between them.
-    pub(crate) fn rows_beside_jumps(&self) -> Option<Diagnostic> {
+    fn own_rows_beside_jumps(&self) -> Option<Diagnostic> {
         let (Some(_), Some(sum)) = (self.jumps.first(), self.sums.first()) else { return None };
         let what = "a function of a sum over rows in a model with jumps";
         (!self.are_sums_terms()).then(|| not_yet(sum.place.span, what))
@@ -22,6 +21,11 @@ impl Model {
 
     /// A jump that reads the side of a surface, which a simulation knows and a problem does not.
     pub(crate) fn jump_by_side(&self) -> Option<Diagnostic> {
+        let of_phases = self.phases.iter().find_map(|phase| phase.model.jump_by_side());
+        of_phases.or_else(|| self.own_jump_by_side())
+    }
+
+    fn own_jump_by_side(&self) -> Option<Diagnostic> {
         let jump = self.jumps.iter().find(|jump| self.reads_selectors(jump))?;
         Some(not_yet(jump.place.span, "a jump that reads the side of a surface"))
     }

@@ -72,6 +72,9 @@ pub(super) fn beginnings(model: &Model, numbers: &Numbers) -> Vec<Beginning> {
         });
         let [known, guess] = [(known, &widest), (guess, &guessed)]
             .map(|(psi, domain)| Tape::new(&graph, &[psi]).evaluate(domain)[0]);
+        let told = model.surfaces[jump.surface].begins;
+        let known = known.intersect(Interval::new(told.range[0], told.range[1]));
+        let guess = told.guess.map_or(guess, Interval::point);
         let [reach, guess] = [known, guess].map(|psi| height(jump.direction, psi));
         let has_both = super::path::has_both(&model.jumps, jump);
         Beginning {

@@ -10,7 +10,7 @@ pub(super) fn numbered(name: &str, models: impl Iterator<Item = Model>) -> Vec<P
     let phase = |(j, model): (usize, Model)| Phase {
         place: Place { name: format!("{name} {}", j + 1), ..Place::default() },
         model,
-        holds_at_first: false,
+        hold_at_first: 0,
     };
     models.enumerate().map(phase).collect()
 }

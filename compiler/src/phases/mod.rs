@@ -13,10 +13,12 @@
 //! times at its ends only, so that the cost of a solve is that of all phases one after the other.
 
 mod at_times;
+mod combinations;
 mod course;
 mod crossings;
 mod division;
 mod hold;
+mod in_phases;
 mod links;
 mod modes;
 mod path;
@@ -25,11 +27,13 @@ mod shares;
 mod turns;
 
 pub use at_times::{ends_at, with_times};
+pub use combinations::{Combination, beside, combinations};
 pub use course::{Course, Ends};
 pub use crossings::crossings;
+pub use in_phases::with_jumps_in_phases;
 pub use modes::{
     Arc, HoldNormals, Limit, Mode, NormalsAt, PhaseOfModes, Point, Slopes, hamiltonian,
-    is_uncontrolled, limits, may_hold, with_modes, with_modes_in_phases,
+    is_uncontrolled, limits, may_hold, with_beginnings, with_modes, with_modes_in_phases,
 };
 pub use sequences::{Sequences, sequences};
 
@@ -170,7 +174,7 @@ impl<'m> MultiPhase<'m> {
             .map(|j| Phase {
                 place: self.named(j),
                 model: self.phase(j, &shares),
-                holds_at_first: false,
+                hold_at_first: 0,
             })
             .collect();
         let mut links: Vec<_> = (0..self.sequence.len()).map(|j| self.link(j)).collect();

@@ -17,7 +17,7 @@ const TRIED: usize = 3;
 /// Longer sequences are not tried.
 const LONGEST: usize = 8;
 /// More are not tried.
-const MOST: usize = 32;
+pub(super) const MOST: usize = 32;
 
 /// What may happen in a model with jumps.
 pub struct Sequences {

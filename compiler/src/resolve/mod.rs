@@ -11,7 +11,7 @@ mod items;
 pub(crate) mod phases;
 
 use crate::data::Tables;
-use crate::model::{Model, Phase, Place, Surface};
+use crate::model::{Begins, Model, Phase, Place, Surface};
 use crate::settings::SCHEME_OF_FITS;
 use crate::syntax::scope::Scope;
 use crate::units::{self, Readings};
@@ -107,10 +107,11 @@ impl Elaborator<'_> {
         let surface = |entry: elaborator::SurfaceEntry| Surface {
             place: entry.place,
             psi: entry.psi.unwrap_or(zero),
+            begins: Begins::default(),
         };
         let surfaces: Vec<Surface> = self.surfaces.into_iter().map(surface).collect();
         let phase = |inner: Inner<'_>| Phase {
-            holds_at_first: true,
+            hold_at_first: usize::MAX,
             place: Place { name: inner.name.name.clone(), span: inner.name.span },
             model: Model { name: inner.name.name.clone(), ..inner.meaning.into_model() },
         };

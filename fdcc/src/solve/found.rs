@@ -6,6 +6,7 @@ use crate::names::status_name;
 use fdcc_compiler::Model;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Problem};
+use fdcc_runtime::solution::phases;
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
 /// The best answer, and what else was tried.
@@ -123,6 +124,34 @@ pub(super) struct FoundChain {
     pub starts: Vec<Ended>,
     /// Answers of other starts with other objectives, the best one first.
     pub others: Vec<(Chain, ChainOutcome)>,
+    /// Of a model with jumps in its phases, which are one trajectory each.
+    pub divided: Option<Box<Divided>>,
+}
+
+/// How the phases of a model are divided at their jumps, and what else was tried.
+#[derive(Clone)]
+pub(super) struct Divided {
+    /// The model, whose phases know where they may begin.
+    pub written: Model,
+    /// All that was solved at once.
+    pub whole: Phases,
+    /// Of each phase.
+    pub pieces: Vec<Pieces>,
+    pub sequences: Vec<Sequence>,
+    pub is_cut: bool,
+    /// The answers with the next best sequences of jumps.
+    pub next: Vec<FoundChain>,
+}
+
+/// A phase of a model as it is divided at its jumps.
+#[derive(Clone)]
+pub(super) struct Pieces {
+    /// Which jumps and crossings happen, one between each two pieces.
+    pub events: Vec<usize>,
+    /// The same, with the states on both sides.
+    pub happened: Vec<phases::Jump>,
+    /// What was solved of it.
+    pub phases: Phases,
 }
 
 impl FoundChain {

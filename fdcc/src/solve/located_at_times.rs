@@ -19,7 +19,8 @@ pub(super) fn solution(model: &Model, found: Found, options: &Options) -> Soluti
     let names = divided.phases.iter().map(|it| it.place.name.clone());
     let names: Vec<String> = names.collect();
     let starts = found.starts.clone();
-    let in_phases = FoundChain { chain, outcome, step_errors: None, starts, others: Vec::new() };
+    let (step_errors, others) = (None, Vec::new());
+    let in_phases = FoundChain { chain, outcome, step_errors, starts, others, divided: None };
     let mut answer = located_in_phases::solution(&model.with_meaning(divided), in_phases, options);
     let Some(certificate) = answer.certificate.take().map(|it| it.of_whole(&names)) else {
         return Solution::new(model.clone(), found);

@@ -3,9 +3,10 @@
 
 use super::Solution;
 use super::certify::{accuracy, certificate, size_of_objective};
-use super::found::{FoundChain, Phases};
+use super::found::{FoundChain, Phases, Pieces};
 use super::kink_gaps::is_tight;
 use super::located::{grid, may_be_near, most_halvings};
+use super::phases::jumps_of;
 use super::report::Options;
 use super::true_optimum::{
     Certificate, Check, Contacts, First, Located, Part, Spent, Whole, halved_in_phases,
@@ -13,9 +14,12 @@ use super::true_optimum::{
 };
 use crate::model::Model;
 use crate::verification::{LinkGap, Verification};
+use fdcc_compiler::between_jumps;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Method, Problem};
+use fdcc_runtime::solution::phases;
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
+use std::borrow::Cow;
 
 /// The located optimum if it is certified; else the smoothed answer, with what was checked.
 pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> Solution {
@@ -26,9 +30,13 @@ pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> S
     let problems = found.chain.phases.iter();
     let problems: Vec<Problem> =
         problems.map(|it| Problem { unknowns: unknowns.clone(), ..it.clone() }).collect();
-    let own = model.meaning().phases.iter().map(|it| &it.model).zip(&problems);
-    let parts: Vec<Part> = own.map(|(model, problem)| Part { model, problem }).collect();
-    let search = Search { model, found: &found, parts: &parts, options };
+    let meaning = found.divided.as_ref().map_or(model.meaning(), |it| &it.written);
+    let written = || meaning.phases.iter().map(|it| &it.model);
+    let between: Vec<Cow<fdcc_compiler::Model>> = written().map(between_jumps).collect();
+    let own = written().zip(&between).zip(&problems);
+    let parts = own.map(|((written, model), problem)| Part { written, model, problem });
+    let parts: Vec<Part> = parts.collect();
+    let search = Search { model, whole: meaning, found: &found, parts: &parts, options };
     match search.certified() {
         Ok(answer) => answer,
         Err(certificate) => Solution::of_phases(model.clone(), found).missed(certificate, options),
@@ -38,6 +46,8 @@ pub(super) fn solution(model: &Model, found: FoundChain, options: &Options) -> S
 /// What is known before anything is located.
 struct Search<'s> {
     model: &'s Model,
+    /// What it means.
+    whole: &'s fdcc_compiler::Model,
     found: &'s FoundChain,
     parts: &'s [Part<'s>],
     options: &'s Options<'s>,
@@ -50,14 +60,21 @@ impl Search<'_> {
             .or_else(|one| self.certified_from(First::Contacts).map_err(|other| one.least(other)))
     }
 
+    /// The jumps and crossings of a phase of the smoothed answer.
+    fn jumps(&self, phase: usize) -> Vec<(usize, phases::Jump)> {
+        let Some(divided) = &self.found.divided else { return Vec::new() };
+        let Pieces { events, happened, .. } = &divided.pieces[phase];
+        events.iter().copied().zip(happened.iter().cloned()).collect()
+    }
+
     fn certified_from(&self, first: First) -> Result<Solution, Certificate> {
-        let (whole, stop) = (self.model.meaning(), self.options.stop);
+        let (whole, stop) = (self.whole, self.options.stop);
         let mut spent = Spent::default();
-        let of = |(part, outcome): (&Part, &Outcome)| {
-            Whole::of_smoothed(part.model, part.problem, outcome.clone(), Vec::new())
+        let of = |(at, (part, outcome)): (usize, (&Part, &Outcome))| {
+            Whole::of_smoothed(part.model, part.problem, outcome.clone(), self.jumps(at))
         };
-        let smoothed: Vec<Whole> =
-            self.parts.iter().zip(&self.found.outcome.phases).map(of).collect();
+        let smoothed = self.parts.iter().zip(&self.found.outcome.phases).enumerate();
+        let smoothed: Vec<Whole> = smoothed.map(of).collect();
         let from = (&smoothed[..], first);
         let located = locate_in_phases(whole, self.parts, from, stop, &mut spent);
         let Some(mut located) = located else { return Err(self.nothing()) };
@@ -91,7 +108,10 @@ impl Search<'_> {
 
     /// Whether every optimum is global: as for a model of one piece.
     fn is_global(&self) -> bool {
-        let is_smooth = |it: &Part| it.model.surfaces.is_empty() && it.problem.is_autonomous;
+        let is_smooth = |it: &Part| {
+            let is_one = it.model.surfaces.is_empty() && it.written.jumps.is_empty();
+            is_one && it.problem.is_autonomous
+        };
         self.found.outcome.solution.global && self.parts.iter().all(is_smooth)
     }
 
@@ -104,14 +124,23 @@ impl Search<'_> {
     fn answer(&self, located: &[Located]) -> Solution {
         let joint = &located[0].joint;
         let pairs = || self.parts.iter().zip(located);
-        let phases: Vec<Outcome> = pairs().map(|(part, it)| outcome(part, it)).collect();
+        let of_pairs = pairs().map(|(part, it)| outcome(part, it));
+        let (phases, jumps): (Vec<Outcome>, Vec<_>) = of_pairs.unzip();
         let problems = pairs().zip(&phases).map(|((part, it), own)| problem(part, it, own));
         let mut chain = self.found.chain.clone();
         chain.phases = problems.collect();
         let outcome = ChainOutcome { phases, sigma: Vec::new(), ..joint.outcome.clone() };
         let starts = self.found.starts.clone();
-        let found = FoundChain { chain, outcome, step_errors: None, starts, others: Vec::new() };
+        let (step_errors, others, divided) = (None, Vec::new(), None);
+        let found = FoundChain { chain, outcome, step_errors, starts, others, divided };
         let mut solution = Solution::of_phases(self.model.clone(), found);
+        for ((part, it), jumps) in self.parts.iter().zip(&mut solution.parts).zip(jumps) {
+            it.jumps = jumps_of(part.written, &it.problem, jumps);
+        }
+        if let Some(divided) = &self.found.divided {
+            solution.sequences.clone_from(&divided.sequences);
+            solution.sequences_left_out = divided.is_cut;
+        }
         solution.certificate = Some(self.certificate(located, &solution));
         let mut first = 0;
         for ((part, own), it) in pairs().zip(&mut solution.parts) {
@@ -174,11 +203,11 @@ fn gap_of_objective(located: &[Located], solution: &Solution, replays: &[Verific
     solution.objective_of(replays).map_or(f64::INFINITY, |it| (it - own).abs() / size)
 }
 
-/// A phase as one trajectory.
-fn outcome(part: &Part, located: &Located) -> Outcome {
-    let mut outcome = located.whole(part.problem).outcome;
+/// A phase as one trajectory, and what happens in it.
+fn outcome(part: &Part, located: &Located) -> (Outcome, Vec<(usize, phases::Jump)>) {
+    let Whole { mut outcome, jumps, .. } = located.whole(part.problem);
     Contacts::new(part.model, located).put_multipliers(&mut outcome.trajectory);
-    outcome
+    (outcome, jumps)
 }
 
 /// A phase on the grid of its answer.
@@ -198,14 +227,14 @@ fn asks_for_truth(model: &Model, found: &FoundChain) -> bool {
     if !are_tight || phases().any(|it| !it.are_sums_terms()) {
         return false;
     }
-    let mut switched = phases().filter(|it| !it.surfaces.is_empty()).peekable();
+    let is_switched = |it: &fdcc_compiler::Model| !between_jumps(it).surfaces.is_empty();
     let outcome = &found.outcome;
-    match switched.peek() {
-        Some(_) => {
+    match phases().any(|it| !it.jumps.is_empty() || is_switched(it)) {
+        true => {
             may_be_near(&outcome.solution.status, outcome.is_impossible)
-                && switched.all(|it| !it.method.names_width())
+                && phases().all(|it| !is_switched(it) || !it.method.names_width())
         }
-        None => {
+        false => {
             let has_objective = found.chain.phases[0].has_objective;
             let is_meant = |it: &fdcc_compiler::Model| it.sums.is_empty() && !it.method.names_grid;
             found.is_solved() && has_objective && phases().all(is_meant)

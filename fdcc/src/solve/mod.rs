@@ -1,6 +1,7 @@
 //! From a compiled model to a [`Solution`]: [`multistart`] tries several starting points,
 //! [`sequences`] all sequences of jumps.
 
+mod alternatives;
 mod at_times;
 mod beginning;
 mod bounds;
@@ -10,6 +11,7 @@ mod controller;
 mod families;
 mod found;
 mod grid;
+mod joined_phases;
 mod kink_gaps;
 mod kink_words;
 mod kinks;
@@ -26,9 +28,11 @@ mod reach;
 mod report;
 mod sequence_of_guess;
 mod sequences;
+mod sequences_in_phases;
 mod shown;
 mod simulated_start;
 mod solution;
+mod start_beside;
 mod sweep;
 mod timing;
 pub mod true_optimum;
@@ -94,8 +98,10 @@ impl Model {
 
     fn compile_as_it_is(&self, without_kinks: Option<Compiled>) -> Result<Compiled, Error> {
         let chain = self.chain()?;
-        refuse_senseless(&chain, self.meaning().jumps.len())?;
-        let is_one = self.meaning().jumps.is_empty() && self.meaning().at_times.is_empty();
+        let of_phases = self.meaning().phases.iter().map(|it| it.model.jumps.len());
+        let jumps = self.meaning().jumps.len() + of_phases.sum::<usize>();
+        refuse_senseless(&chain, jumps)?;
+        let is_one = jumps == 0 && self.meaning().at_times.is_empty();
         if is_one && without_kinks.is_none() {
             self.make_ready(|| chain.phases.iter().for_each(make_machine_code));
         }
@@ -199,6 +205,9 @@ impl Compiled {
                 false => located_at_times::solution(&self.model, found, options),
             });
         }
+        if meaning.phases.iter().any(|it| !it.model.jumps.is_empty()) {
+            return self.solve_with_jumps_in_phases(options);
+        }
         let start = match options.start {
             Start::Guess => None,
             Start::Record(record) => Some(warm_start::from_record(record, &self.chain)),
@@ -224,18 +233,21 @@ impl Compiled {
     /// that is.
     fn with_certified_jumps(&self, mut found: Found, options: &Options) -> Solution {
         let next = std::mem::take(&mut found.next);
-        let first = located::solution(&self.model, found, options);
-        let is_missing = first.certificate.as_ref().is_some_and(|it| !it.is_certified());
-        for other in next.into_iter().filter(|_| is_missing) {
-            if (options.stop)().is_break() {
-                break;
-            }
-            let other = located::solution(&self.model, other, options);
-            if other.is_certified() {
-                return other;
-            }
-        }
-        first
+        certified_or_next(found, next, options, &|it| located::solution(&self.model, it, options))
+    }
+
+    /// The same of a model with jumps in its phases.
+    fn solve_with_jumps_in_phases(&self, options: &Options) -> Result<Solution, Error> {
+        let solve =
+            |earlier| sequences_in_phases::solve(&self.model, &self.chain, earlier, options);
+        let mut found = match options.start {
+            Start::Guess => solve(None)?,
+            Start::Record(it) => solve(Some(it))?,
+            Start::Solution(it) | Start::Later(it) => solve(Some(&it.record()))?,
+        };
+        let next = found.divided.as_mut().map(|it| std::mem::take(&mut it.next));
+        let locate = |it| located_in_phases::solution(&self.model, it, options);
+        Ok(certified_or_next(found, next.unwrap_or_default(), options, &locate))
     }
 
     /// What is certified near the answer with another kernel, where nothing is near that with the
@@ -285,6 +297,28 @@ impl Compiled {
 fn is_far_worse(one: &Solution, other: &Solution) -> bool {
     let [own, its] = [one, other].map(|it| it.problem.sense * it.objective());
     other.status().is_solved() && own - its > FAR_WORSE * own.abs().max(its.abs())
+}
+
+/// What is located near the first answer; where that is not certified, near the first of the others
+/// at which it is.
+fn certified_or_next<F>(
+    first: F,
+    next: Vec<F>,
+    options: &Options,
+    locate: &dyn Fn(F) -> Solution,
+) -> Solution {
+    let first = locate(first);
+    let is_missing = first.certificate.as_ref().is_some_and(|it| !it.is_certified());
+    for other in next.into_iter().filter(|_| is_missing) {
+        if (options.stop)().is_break() {
+            break;
+        }
+        let other = locate(other);
+        if other.is_certified() {
+            return other;
+        }
+    }
+    first
 }
 
 /// Makes the machine code that every solve needs, so that it counts as compiling.

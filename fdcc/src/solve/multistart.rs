@@ -39,7 +39,7 @@ pub(super) fn solve(
     let mut outcome = ChainOutcome { attempts, ..outcome };
     unless_stopped(&mut outcome.solution, stopped);
     let others = all.map(|it| (it.chain, it.outcome)).collect();
-    Ok(FoundChain { chain, outcome, step_errors: error, starts, others })
+    Ok(FoundChain { chain, outcome, step_errors: error, starts, others, divided: None })
 }
 
 /// The better one of an answer and of what is found from another start.
@@ -49,11 +49,11 @@ pub(super) fn also_from(
     options: &Options,
     part: Part,
 ) -> Result<FoundChain, Error> {
-    let FoundChain { chain, outcome, step_errors, starts, others } = found;
+    let FoundChain { chain, outcome, step_errors, starts, others, .. } = found;
     let first = Refined { chain, outcome, error: step_errors };
     let other = run(&first.chain, Some(start), options, part)?;
     let Refined { chain, outcome, error } = better(first, other);
-    Ok(FoundChain { chain, outcome, step_errors: error, starts, others })
+    Ok(FoundChain { chain, outcome, step_errors: error, starts, others, divided: None })
 }
 
 /// The best answer, then others that are solved, of those with the same objective one.

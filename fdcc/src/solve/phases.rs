@@ -1,13 +1,14 @@
 //! Solutions of models with phases: each phase is a solution of its own.
 
-use super::found::FoundChain;
+use super::found::{Divided, FoundChain, Jump};
+use super::sequences::happened;
 use super::solution::Solution;
 use crate::error::Error;
 use crate::model::{Model, frame};
 use crate::record::Record;
 use crate::verification::{LinkGap, Verification, objective_of_links, verify_phases};
-use fdcc_runtime::problem::Chain;
-use fdcc_runtime::solution::Trajectory;
+use fdcc_runtime::problem::{Chain, Problem};
+use fdcc_runtime::solution::{Trajectory, phases};
 use fdcc_runtime::solve::{ChainOutcome, Outcome};
 
 /// The answer to a chain, as the solver has it.
@@ -20,7 +21,7 @@ pub(super) struct Whole {
 impl Solution {
     /// The solution of a model with phases.
     pub(super) fn of_phases(model: Model, found: FoundChain) -> Self {
-        let FoundChain { chain, outcome, step_errors, starts, .. } = found;
+        let FoundChain { chain, outcome, step_errors, starts, divided, .. } = found;
         let own = model.phases().into_iter().zip(&chain.phases).zip(&outcome.phases);
         let parts = own.map(|((model, problem), outcome)| {
             Solution::new(model, super::found::Found::new(problem.clone(), outcome.clone()))
@@ -36,7 +37,21 @@ impl Solution {
         let mut solution = Solution::new(model, whole);
         (solution.step_errors, solution.starts) = (step_errors, starts);
         (solution.parts, solution.whole) = (parts, Some(Whole { chain, outcome }));
+        divided.into_iter().for_each(|it| solution.take_pieces(*it));
         solution
+    }
+
+    /// What its phases are divided into at their jumps.
+    fn take_pieces(&mut self, divided: Divided) {
+        let Divided { whole, pieces, sequences, is_cut, .. } = divided;
+        let phases = self.model().meaning().phases.clone();
+        for ((part, it), phase) in self.parts.iter_mut().zip(pieces).zip(&phases) {
+            let named = it.events.into_iter().zip(it.happened);
+            part.jumps = jumps_of(&phase.model, &part.problem, named);
+            part.between_jumps = Some(it.phases);
+        }
+        (self.sequences, self.sequences_left_out) = (sequences, is_cut);
+        self.between_jumps = Some(whole);
     }
 
     /// The solution of each phase, in the order of time; none where the model has no phases.
@@ -79,6 +94,16 @@ impl Solution {
         let of_links = objective_of_links(chain, &self.record(), replays);
         Some(of_phases + self.problem.sense * of_links)
     }
+}
+
+/// The jumps among what happens in a phase of the model, with their names.
+pub(super) fn jumps_of(
+    model: &fdcc_compiler::Model,
+    problem: &Problem,
+    events: impl IntoIterator<Item = (usize, phases::Jump)>,
+) -> Vec<Jump> {
+    let named = events.into_iter().filter_map(|(at, it)| Some((model.jumps.get(at)?, it)));
+    named.map(|(jump, it)| happened(problem, jump.place.name.clone(), it)).collect()
 }
 
 /// What is said of all phases together: no signals.

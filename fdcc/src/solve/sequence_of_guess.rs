@@ -25,6 +25,11 @@ impl Guessed {
         let system = compile_simulation(model).ok()?;
         let accuracy = Accuracy { max_steps: STEPS, ..Accuracy::default() };
         let simulation = simulate(&system, &Controls::Guess, &accuracy);
+        Self::of_motion(system, simulation, possible)
+    }
+
+    /// What a motion is, if it reaches its end.
+    pub fn of_motion(system: System, simulation: Simulation, possible: &Sequences) -> Option<Self> {
         let (mut events, mut happened) = (Vec::new(), Vec::new());
         for event in &simulation.events {
             if let Some(number) = happening(&system, possible, &events, event) {
@@ -40,24 +45,25 @@ impl Guessed {
 
     /// Whether it says where the motion with these events is: it has them, or nothing but unknowns
     /// can be chosen, and one more happens in the end, or one less.
-    pub fn is_near(&self, events: &[usize], between: &Problem) -> bool {
+    pub fn is_near(&self, events: &[usize], is_driven: bool) -> bool {
         let count = events.len().min(self.events.len());
         let is_beside = events[..count] == self.events[..count]
             && events.len().abs_diff(self.events.len()) == 1;
-        events == self.events || between.controls.is_empty() && is_beside
+        events == self.events || !is_driven && is_beside
     }
 
-    /// The motion on the grids of a chain, which may have other events at its end.
-    pub fn start(&self, between: &Problem, chain: &Chain) -> Start {
+    /// Its phases, of which there are as many as problems; without unknowns.
+    fn phases(&self, problems: &[Problem]) -> Vec<Earlier> {
         let [first, last] = self.system.interval;
-        let ends = (0..chain.phases.len() - 1).map(|it| self.time_of(it));
+        let ends = self.times(problems.len());
         let times: Vec<f64> = [first].into_iter().chain(ends).chain([last]).collect();
-        let phases = times.windows(2).zip(&chain.phases).enumerate();
-        let each = phases.map(|(j, (pair, problem))| Earlier {
-            unknowns: self.unknowns(between, chain, problem),
-            ..self.phase(j, [pair[0], pair[1]], problem)
-        });
-        from_earlier(chain, &each.collect::<Vec<_>>())
+        let phases = times.windows(2).zip(problems).enumerate();
+        phases.map(|(j, (pair, problem))| self.phase(j, [pair[0], pair[1]], problem)).collect()
+    }
+
+    /// When its phases end, if there are so many, but for the last one.
+    fn times(&self, phases: usize) -> impl Iterator<Item = f64> {
+        (0..phases - 1).map(|it| self.time_of(it))
     }
 
     /// When an event happens; the last time if it does not.
@@ -97,18 +103,31 @@ impl Guessed {
         let at = self.system.parameters.iter().position(|it| it.name == unknown)?;
         Some(self.system.parameters[at].value)
     }
+}
 
-    /// The unknowns of the model, then the times of what happens.
-    fn unknowns(&self, between: &Problem, chain: &Chain, problem: &Problem) -> Vec<Option<f64>> {
-        let time = |parameter: usize| {
+/// Motions on the grids of a chain, which may have other events at their ends: one for each phase
+/// of a model, with how many phases of the chain it has.
+pub(super) fn start(motions: &[(&Guessed, usize)], between: &Problem, chain: &Chain) -> Start {
+    let times = motions.iter().flat_map(|(it, phases)| it.times(*phases));
+    let times: Vec<f64> = times.collect();
+    let (mut all, mut problems) = (Vec::new(), &chain.phases[..]);
+    for (motion, phases) in motions {
+        let (own, others) = problems.split_at(*phases);
+        // The unknowns of the model, then the times of what happens.
+        let unknown = |parameter: usize| {
             let at = chain.unknowns.iter().position(|it| it.parameter == parameter)?;
             match at.checked_sub(between.unknowns.len()) {
-                Some(event) => Some(self.time_of(event)),
-                None => self.value_of(&between.parameters[parameter].name),
+                Some(event) => times.get(event).copied(),
+                None => motion.value_of(&between.parameters[parameter].name),
             }
         };
-        problem.unknowns.iter().map(|it| time(it.parameter)).collect()
+        for (phase, problem) in motion.phases(own).into_iter().zip(own) {
+            let unknowns = problem.unknowns.iter().map(|it| unknown(it.parameter)).collect();
+            all.push(Earlier { unknowns, ..phase });
+        }
+        problems = others;
     }
+    from_earlier(chain, &all)
 }
 
 /// Whether events follow each other ever faster: no finite number of phases is all of them.

@@ -1,37 +1,21 @@
 //! A model with jumps: each sequence of jumps that may happen is a problem of its own, and the best
 //! answer is taken.
 
-use super::found::{Found, FoundChain, Jump, Phases, Sequence};
-use super::multistart::{self, all_attempts, first_stopped, is_stopped, unless_stopped};
+use super::alternatives::{self, Alternative, Solves, best_and_next, finest};
+use super::found::{Found, FoundChain, Jump, Phases};
+use super::multistart::{all_attempts, first_stopped, unless_stopped};
 use super::report::{Ended, Options, Part, Report};
-use super::sequence_of_guess::Guessed;
-use super::tuning::sequences::{BRIEF, FEW_SEQUENCES, FEWEST_INTERVALS, MOST_CLIMBS, NEXT, WORSE};
+use super::sequence_of_guess::{self, Guessed};
+use super::tuning::sequences::{MOST_CLIMBS, NEXT};
 use crate::error::Error;
-use crate::executor::Executor;
 use crate::record::Record;
 use crate::warm_start;
 use fdcc_compiler::{
     Alike, Model, Sequences, compile_chain_like, crossings, sequences, with_phases,
 };
 use fdcc_runtime::nlp;
-use fdcc_runtime::problem::{Chain, Grid, Method, Problem};
+use fdcc_runtime::problem::Problem;
 use fdcc_runtime::solution::phases::{self, joined};
-use fdcc_runtime::solve::multistart::is_better;
-
-/// A sequence of jumps and crossings, and the chain of phases in which it happens.
-#[derive(Clone)]
-struct Alternative {
-    /// Of numbers.
-    events: Vec<usize>,
-    /// The names of the jumps, with nothing for a surface that is crossed without one.
-    jumps: Vec<Option<String>>,
-    /// The names of these surfaces.
-    crosses: Vec<String>,
-    /// `no jump`, or `bounce, bounce`, or `crossing of rim, bounce`.
-    words: String,
-    model: Model,
-    chain: Chain,
-}
 
 /// Solves for every sequence; `between` is what holds between the jumps. An earlier solution is the
 /// start of the sequence that it has.
@@ -95,6 +79,22 @@ struct Starts<'s> {
     options: &'s Options<'s>,
 }
 
+impl Starts<'_> {
+    fn each(&self, all: &[Alternative]) -> Result<Vec<FoundChain>, Error> {
+        let Starts { between, earlier, guessed, best, options } = *self;
+        let is_driven = !between.controls.is_empty();
+        let starts = |it: &Alternative| {
+            let guessed = guessed.filter(|guess| guess.is_near(&it.events[0], is_driven));
+            let phases = it.chain.phases.len();
+            let start = |guess| sequence_of_guess::start(&[(guess, phases)], between, &it.chain);
+            [it.start(between, earlier), guessed.map(start)]
+        };
+        let has_objective = between.has_objective;
+        let solves = Solves { starts: &starts, is_driven, has_objective, best, options };
+        alternatives::each(all, &solves)
+    }
+}
+
 /// The sequences that were tried, each with its answer.
 struct Tried<'s> {
     model: &'s Model,
@@ -113,11 +113,11 @@ impl Tried<'_> {
             if !is_first && (starts.options.stop)().is_break() {
                 break;
             }
-            if self.all.iter().chain(&new).all(|it| it.events != sequence) {
+            if self.all.iter().chain(&new).all(|it| it.events[0] != sequence) {
                 new.push(Alternative::new(self.model, sequence, &mut self.alike)?);
             }
         }
-        self.found.extend(each(&new, starts)?);
+        self.found.extend(starts.each(&new)?);
         self.all.extend(new);
         Ok(())
     }
@@ -133,7 +133,7 @@ impl Tried<'_> {
             let (best, _) = best_and_next(&self.found);
             let motion = Guessed::of(&self.with_unknowns_of(best), possible);
             let own = motion.iter().map(|it| it.events.clone());
-            let new = own.chain(possible.beside(&self.all[best].events)).collect();
+            let new = own.chain(possible.beside(&self.all[best].events[0])).collect();
             let best_so_far = self.found[best].outcome.solution.objective;
             let starts = Starts { guessed: motion.as_ref(), best: best_so_far, ..self.starts };
             self.add(new, &starts)?;
@@ -158,82 +158,6 @@ impl Tried<'_> {
     }
 }
 
-/// The best one; and the others that are solved, the best of them first.
-fn best_and_next(found: &[FoundChain]) -> (usize, Vec<usize>) {
-    let solution = |at: usize| &found[at].outcome.solution;
-    let better = |a: usize, b: usize| if is_better(solution(b), solution(a)) { b } else { a };
-    let best = (0..found.len()).reduce(better).expect("that no jump happens is one of them");
-    let others = (0..found.len()).filter(|at| *at != best && found[*at].is_solved());
-    let mut next: Vec<usize> = others.collect();
-    next.sort_by(|a, b| solution(*a).objective.total_cmp(&solution(*b).objective));
-    (best, next)
-}
-
-/// The answer of each, up to the first that is enough. Where there are many, those that lead to
-/// nothing on a coarse grid, or to something clearly worse, are left at that.
-fn each(all: &[Alternative], starts: &Starts) -> Result<Vec<FoundChain>, Error> {
-    let are_few = all.len() <= FEW_SEQUENCES && starts.best.is_infinite();
-    if are_few || !starts.between.has_objective {
-        return on_own_grids(all, starts);
-    }
-    let briefly: Vec<Alternative> = all.iter().map(Alternative::brief).collect();
-    let mut found = on_own_grids(&briefly, starts)?;
-    let objectives = found.iter().filter(|it| it.is_solved());
-    let best = objectives.map(|it| it.outcome.solution.objective).fold(starts.best, f64::min);
-    if best.is_infinite() && found.len() == all.len() {
-        return on_own_grids(all, starts);
-    }
-    for (alternative, own) in all.iter().zip(&mut found) {
-        let objective = own.outcome.solution.objective;
-        if own.is_solved() && objective <= best + WORSE * best.abs() {
-            let alone = std::slice::from_ref(alternative);
-            let whole = on_own_grids(alone, starts)?;
-            *own = whole
-                .into_iter()
-                .next()
-                .filter(FoundChain::is_solved)
-                .unwrap_or_else(|| own.clone());
-        }
-    }
-    Ok(found)
-}
-
-/// The same on the grids that they have.
-fn on_own_grids(all: &[Alternative], starts: &Starts) -> Result<Vec<FoundChain>, Error> {
-    let Starts { between, earlier, guessed, options, .. } = *starts;
-    let one = |index: usize| {
-        let alternative = &all[index];
-        let part = Part { sequence: Some(&alternative.words), start: None };
-        let is_near = |it: &&Guessed| it.is_near(&alternative.events, between);
-        let motion = guessed.filter(is_near).map(|it| it.start(between, &alternative.chain));
-        let start = alternative.start(between, earlier);
-        // With controls the guess of the model may know more than a motion that ignores its goal.
-        let first = if between.controls.is_empty() { start.or(motion.clone()) } else { start };
-        let mut found = multistart::solve(&alternative.chain, first, options, part)?;
-        if let Some(motion) = motion.filter(|_| !between.controls.is_empty()) {
-            found = multistart::also_from(found, motion, options, part)?;
-        }
-        // A proof says something of the phases of this sequence only.
-        found.outcome.is_impossible = false;
-        found.outcome.solution.global = false;
-        Ok(found)
-    };
-    // Without an objective one trajectory is as good as another.
-    let is_enough = |it: &FoundChain| {
-        is_stopped(&it.outcome.solution) || !between.has_objective && it.is_solved()
-    };
-    let ends = |found: &Result<FoundChain, Error>| found.as_ref().map_or(true, is_enough);
-    // Several starts run in parallel already.
-    let executor = if options.starts == 1 { options.executor } else { Executor::serial() };
-    // The first may be all that is needed.
-    let alone = if between.has_objective { 0 } else { 1 };
-    let mut found: Vec<Result<FoundChain, Error>> = (0..alone).map(&one).collect();
-    if !found.last().is_some_and(ends) {
-        found.extend(executor.in_order(all.len() - alone, |at| one(at + alone), ends));
-    }
-    found.into_iter().collect()
-}
-
 impl Alternative {
     fn new(between: &Model, sequence: Vec<usize>, alike: &mut Alike) -> Result<Self, Error> {
         let model = with_phases(between, &sequence).map_err(Error::Model)?;
@@ -246,24 +170,7 @@ impl Alternative {
         let crosses = against.map(surface).collect();
         let jump = |at: &usize| Some(between.jumps.get(*at)?.place.name.clone());
         let jumps = sequence.iter().map(jump).collect();
-        Ok(Alternative { events: sequence, jumps, crosses, words, model, chain })
-    }
-
-    /// On coarse grids, which together have as many intervals as one phase is to have.
-    fn brief(&self) -> Self {
-        let count = self.chain.phases.len();
-        let coarse = |method: &Method| match method.grid {
-            Grid::Uniform(n) => Grid::Uniform((n / count).max(FEWEST_INTERVALS).min(n)),
-            _ => method.grid.clone(),
-        };
-        let brief = |problem: &Problem| {
-            let own = &problem.method;
-            let max_iter = own.max_iter.min(BRIEF);
-            let method = Method { grid: coarse(own), max_iter, ..own.clone() };
-            Problem { method, ..problem.clone() }
-        };
-        let phases = self.chain.phases.iter().map(brief).collect();
-        Alternative { chain: Chain { phases, ..self.chain.clone() }, ..self.clone() }
+        Ok(Alternative { events: vec![sequence], jumps, crosses, words, model, chain })
     }
 
     fn start(&self, between: &Problem, earlier: Option<&Record>) -> Option<nlp::Start> {
@@ -274,16 +181,6 @@ impl Alternative {
         earlier.filter(is_its).and_then(|it| warm_start::phases::start(it, between, &self.chain))
     }
 
-    fn tried(&self, found: &FoundChain, is_answer: bool) -> Sequence {
-        Sequence {
-            jumps: self.jumps.iter().flatten().cloned().collect(),
-            crosses: self.crosses.clone(),
-            words: self.words.clone(),
-            is_answer,
-            ended: Ended::of(&found.chain, &found.outcome),
-        }
-    }
-
     /// The answer as one trajectory.
     fn joined(self, between: &Problem, found: FoundChain) -> Found {
         let FoundChain { chain, outcome, step_errors, starts, .. } = found;
@@ -292,15 +189,9 @@ impl Alternative {
         let jumps = jumps.filter_map(|(name, jump)| Some(happened(between, name?, jump))).collect();
         let problem = Problem { method: finest(&chain).clone(), ..between.clone() };
         let phases = Some(Phases { model: self.model, chain, outcome });
-        let events = self.events;
+        let events = self.events.into_iter().next().unwrap_or_default();
         Found { step_errors, starts, jumps, phases, events, ..Found::new(problem, whole) }
     }
-}
-
-/// The method of the phase with most intervals.
-fn finest(chain: &Chain) -> &Method {
-    let methods = chain.phases.iter().rev().map(|phase| &phase.method);
-    methods.max_by_key(|method| method.intervals()).expect("a chain has a phase")
 }
 
 pub(super) fn happened(between: &Problem, name: String, found: phases::Jump) -> Jump {

@@ -91,6 +91,12 @@ pub(super) mod sequences {
     pub(crate) const NEXT: usize = 2;
     /// The best sequence is lengthened or shortened at its end so often.
     pub(crate) const MOST_CLIMBS: usize = 6;
+    /// With jumps in phases, what is better by less of its objective than grids change it leads
+    /// nowhere: two jumps at one time are another grid, and nothing else.
+    pub(crate) const CLIMB: f64 = 0.01;
+    /// A jump that is moved over a link happens so near to it, for the length of the piece next to
+    /// it.
+    pub(crate) const NEAR_LINK: f64 = 0.02;
     /// A guess is not worth more steps of a simulation.
     pub(crate) const STEPS: usize = 20_000;
     /// More are not looked for where the guess leads to that many.

@@ -10,11 +10,25 @@ use std::ops::Range;
 /// The start from the solution, whose jumps are those of the chain; nothing if it is not whole.
 /// `between` is what holds between the jumps.
 pub(crate) fn start(record: &Record, between: &Problem, chain: &Chain) -> Option<Start> {
-    let intervals = intervals(record, chain.phases.len())?;
-    let cut = Cut { record, between, chain };
-    let phases: Vec<Earlier> =
-        intervals.into_iter().enumerate().map(|(j, intervals)| cut.phase(j, intervals)).collect();
-    Some(from_earlier(chain, &phases))
+    let cut = Cut { record, between, chain, first: [0; 2] };
+    Some(from_earlier(chain, &cut.phases(chain.phases.len())?))
+}
+
+/// The same of a model with phases: `between` has the problem of each, without its jumps and
+/// with all unknowns, and into how many phases of the chain it is divided.
+pub(crate) fn start_in_phases(
+    record: &Record,
+    between: &[(&Problem, usize)],
+    chain: &Chain,
+) -> Option<Start> {
+    let (mut all, mut first) = (Vec::new(), [0; 2]);
+    for (between, count) in between {
+        let record = record.phases.iter().find(|it| *it.model == *between.name)?;
+        let cut = Cut { record, between, chain, first };
+        all.extend(cut.phases(*count)?);
+        first = [first[0] + count, first[1] + count - 1];
+    }
+    Some(from_earlier(chain, &all))
 }
 
 /// The intervals of each phase, which begins at the time of a jump.
@@ -50,7 +64,7 @@ pub(crate) fn start_at(
     if !record.jumps.is_empty() || intervals.iter().any(Range::is_empty) {
         return None;
     }
-    let cut = Cut { record, between, chain };
+    let cut = Cut { record, between, chain, first: [0; 2] };
     let phases = intervals.into_iter().enumerate().map(|(j, own)| cut.phase(j, own));
     Some(from_earlier(chain, &phases.collect::<Vec<_>>()))
 }
@@ -60,11 +74,19 @@ struct Cut<'s> {
     record: &'s Record<'s>,
     between: &'s Problem,
     chain: &'s Chain,
+    /// Of the chain, how many phases and jumps are those of other phases of the model.
+    first: [usize; 2],
 }
 
 impl Cut<'_> {
+    /// So many, with a jump between each two; nothing if it has other jumps.
+    fn phases(&self, count: usize) -> Option<Vec<Earlier>> {
+        let intervals = intervals(self.record, count)?;
+        Some(intervals.into_iter().enumerate().map(|(j, own)| self.phase(j, own)).collect())
+    }
+
     fn phase(&self, j: usize, intervals: Range<usize>) -> Earlier {
-        let (record, problem) = (self.record, &self.chain.phases[j]);
+        let (record, problem) = (self.record, &self.chain.phases[self.first[0] + j]);
         let times = &record.time[intervals.start..=intervals.end];
         let shown = self.between.states.iter().filter(|state| !state.hidden);
         let own =
@@ -101,7 +123,10 @@ impl Cut<'_> {
     fn unknown(&self, parameter: usize) -> Option<f64> {
         let at = self.chain.unknowns.iter().position(|it| it.parameter == parameter)?;
         match at.checked_sub(self.between.unknowns.len()) {
-            Some(jump) => self.record.jumps.get(jump).map(|it| it.time).filter(|it| it.is_finite()),
+            Some(jump) => {
+                let own = self.record.jumps.get(jump.checked_sub(self.first[1])?);
+                own.map(|it| it.time).filter(|it| it.is_finite())
+            }
             None => number(&self.record.free, &self.between.parameters[parameter].name),
         }
     }

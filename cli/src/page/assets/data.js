@@ -29,8 +29,9 @@ function valuesBefore(curve, time) {
 
 /// Whether a polynomial control may jump between two of its times.
 function jumpsBetween(curve, a, b) {
-  const { jumps, certificate } = solutions[curve.of];
-  const events = [...(jumps ?? []), ...(certificate?.switches ?? [])];
+  const { phases, certificate } = solutions[curve.of];
+  const jumps = [solutions[curve.of], ...Object.values(phases ?? {})].flatMap((it) => it.jumps ?? []);
+  const events = [...jumps, ...(certificate?.switches ?? [])];
   return curve.values.includes("control_nodes") && events.some(({ time }) => a < time && time < b);
 }
 

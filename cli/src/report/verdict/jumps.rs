@@ -2,7 +2,6 @@
 
 use crate::output::document::Document;
 use crate::output::plural;
-use crate::output::tried::Happened;
 use crate::report::verdict::without_value::WithoutValue;
 use fdcc::{Sequence, Solution};
 
@@ -11,19 +10,21 @@ pub fn lines(solution: &Solution, document: &Document) -> Vec<String> {
     if solution.sequences.is_empty() {
         return Vec::new();
     }
-    let when =
-        |it: &Happened| format!("{} at t = {}", it.jump, document.units.value("time", it.time, 6));
+    let all = document.all_jumps();
+    let when = |(name, time): &(String, f64)| {
+        format!("{name} at t = {}", document.units.value("time", *time, 6))
+    };
     let is_better = |it: &Sequence| {
         it.ended.is_solved && !it.jumps.is_empty() && is_clearly_better(it, solution, document)
     };
-    let happened = match document.jumps.len() {
+    let told = match all.len() {
         0 if solution.sequences.iter().any(is_better) => "none".into(),
         0 if solution.sequences.iter().any(is_unfinished) => "none".into(),
         0 if !solution.sequences.iter().any(|it| it.ended.is_solved) => "none".into(),
         0 => "none is best".into(),
-        _ => document.jumps.iter().map(when).collect::<Vec<_>>().join(", "),
+        _ => all.iter().map(when).collect::<Vec<_>>().join(", "),
     };
-    let mut lines = vec![format!(" jumps {happened}")];
+    let mut lines = vec![format!(" jumps {told}")];
     lines.extend(with_others(solution, document));
     if document.sequences_left_out {
         lines.push(
@@ -43,9 +44,9 @@ fn is_unfinished(sequence: &Sequence) -> bool {
 /// Whether the answer has exactly the jumps of a sequence, wherever it was found: what is located
 /// may have others than what it was found near.
 fn is_found(sequence: &Sequence, document: &Document) -> bool {
-    let jumps = document.jumps.iter().map(|it| &it.jump);
-    let is_known = sequence.is_answer || sequence.crosses.is_empty() && !document.jumps.is_empty();
-    is_known && jumps.eq(&sequence.jumps)
+    let all = document.all_jumps();
+    let is_known = sequence.is_answer || sequence.crosses.is_empty() && !all.is_empty();
+    is_known && all.iter().map(|it| &it.0).eq(&sequence.jumps)
 }
 
 /// By more than a grid changes it.

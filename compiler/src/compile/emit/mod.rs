@@ -61,7 +61,8 @@ pub fn emit_c(model: &Model) -> Result<String, Vec<Diagnostic>> {
 /// The model whose functions are written: with its phases, and the right side instead of the steps
 /// of a composed scheme.
 fn written(model: &Model) -> Result<Model, Vec<Diagnostic>> {
-    if let Some(jump) = model.jumps.first() {
+    let of_phases = model.phases.iter().flat_map(|it| &it.model.jumps);
+    if let Some(jump) = model.jumps.iter().chain(of_phases).next() {
         let message = "a model with jumps cannot be written as C yet";
         let label = "which jumps happen, and when, is found by `solve`";
         return Err(vec![Diagnostic::new(Code::NotYet, message, jump.place.span, label)]);

@@ -5,7 +5,7 @@
 //! ways, that would be said twice, and the Jacobian of the chain would lose rank.
 
 use super::limits::{bounded_states, rates};
-use super::{Arc, Mode, PhaseOfModes};
+use super::{Arc, Mode, PhaseOfModes, between_jumps};
 use crate::expressions::graph::derivative::derivative;
 use crate::expressions::graph::{ById, ExprId, Graph};
 use crate::model::phases::Symbols;
@@ -13,9 +13,9 @@ use crate::model::{Link, Model, Symbol};
 
 /// The start of a phase as links have it.
 pub(super) struct Linked {
-    graph: Graph,
+    pub graph: Graph,
     /// Those of the whole.
-    symbols: Vec<Symbol>,
+    pub symbols: Vec<Symbol>,
     /// What each state is at the first time, where a link hands it over.
     states: Vec<Option<ExprId>>,
     /// The first time.
@@ -43,6 +43,37 @@ impl Linked {
             linked.take_zeros(model, other, structure.last().expect("each phase has a structure"));
         }
         linked
+    }
+
+    /// A value of the phase at the first time, over what links read; what they do not hand over is
+    /// an end of the phase itself.
+    pub fn at_start(&mut self, model: &Model, phase: usize, value: ExprId) -> ExprId {
+        let own = &model.phases[phase].model;
+        let (states, time) = (self.states.clone(), self.time);
+        self.read((&own.graph, &own.symbols), value, &mut |linked, symbol| match symbol {
+            Symbol::Time => Some(time),
+            Symbol::State(at) if states[at].is_some() => states[at],
+            Symbol::Param(_) | Symbol::Free(_) => None,
+            other => {
+                own.input_of(other).map(|it| linked.input(Symbol::OfPhase { phase, input: it }))
+            }
+        })
+    }
+
+    /// A value of another phase at its last time.
+    pub fn at_end(&mut self, model: &Model, phase: usize, value: (&Graph, ExprId)) -> ExprId {
+        let own = &model.phases[phase].model;
+        let time = self.read((&own.graph, &own.symbols), own.interval[1], &mut |_, _| None);
+        self.read((value.0, &own.symbols), value.1, &mut |linked, symbol| {
+            let symbol = match symbol {
+                Symbol::Time => return Some(time),
+                Symbol::State(at) | Symbol::AtEnd(at) => Symbol::AtEnd(at),
+                Symbol::Param(_) | Symbol::Free(_) => return None,
+                other => other,
+            };
+            let input = own.input_of(symbol)?;
+            Some(linked.input(Symbol::OfPhase { phase, input }))
+        })
     }
 
     /// Whether a value of the phase is 0 at the first time whatever is chosen.
@@ -118,7 +149,7 @@ impl Linked {
     /// What is 0 at the last time of a phase: surfaces that are held, bounds that are kept, and
     /// what its conditions say.
     fn take_zeros(&mut self, model: &Model, phase: usize, last: &PhaseOfModes) {
-        let own = &model.phases[phase].model;
+        let own = &between_jumps(&model.phases[phase].model);
         let mut graph = own.graph.clone();
         let mut zeros = Vec::new();
         for (switch, _) in own.switches().iter().zip(&last.modes).filter(|it| *it.1 == Mode::Held) {
@@ -144,18 +175,8 @@ impl Linked {
         for row in own.boundary.iter().filter(|it| it.range.lower == it.range.upper) {
             zeros.push(graph.sub(row.value, row.range.lower));
         }
-        let time = self.read((&own.graph, &own.symbols), own.interval[1], &mut |_, _| None);
         for zero in zeros {
-            let known = self.read((&graph, &own.symbols), zero, &mut |linked, symbol| {
-                let symbol = match symbol {
-                    Symbol::Time => return Some(time),
-                    Symbol::State(at) | Symbol::AtEnd(at) => Symbol::AtEnd(at),
-                    Symbol::Param(_) | Symbol::Free(_) => return None,
-                    other => other,
-                };
-                let input = own.input_of(symbol)?;
-                Some(linked.input(Symbol::OfPhase { phase, input }))
-            });
+            let known = self.at_end(model, phase, (&graph, zero));
             self.zeros.push(known);
         }
     }

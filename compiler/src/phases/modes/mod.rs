@@ -17,13 +17,13 @@
 //! A control may have an *arc*: it is at one of its bounds throughout a phase. So may a state or a
 //! path condition: `limits`.
 
+mod begun;
 mod beside_jumps;
 mod departures;
 mod ends;
 mod hamiltonian;
 mod hold_normals;
 mod hold_parameters;
-mod in_phases;
 mod independent;
 mod junctions;
 mod limits;
@@ -32,14 +32,15 @@ mod links;
 mod phase;
 mod starts;
 
+pub use begun::with_beginnings;
 pub use departures::{is_uncontrolled, may_hold};
 pub use hamiltonian::{Point, hamiltonian};
 pub use hold_normals::{HoldNormals, NormalsAt};
 pub use hold_parameters::Slopes;
-pub use in_phases::with_modes_in_phases;
 pub use limits::{Limit, limits};
 
 use super::division::{Division, divide, numbered};
+use super::in_phases::divided;
 use super::shares::Shares;
 use super::{Jumps, MultiPhase, between_jumps};
 use crate::model::{Model, Place, Symbol, not_yet};
@@ -169,6 +170,22 @@ impl PhaseOfModes {
 /// is no sum.
 pub fn with_modes(model: &Model, phases: &[PhaseOfModes]) -> Result<Model, Vec<Diagnostic>> {
     with_modes_from(model, phases, None)
+}
+
+/// The model in which these phases of given modes follow each other in each of its phases.
+///
+/// # Errors
+///
+/// What cannot be divided into phases of given modes: sums over rows of which the objective is no
+/// sum.
+pub fn with_modes_in_phases(
+    model: &Model,
+    structures: &[&[PhaseOfModes]],
+) -> Result<Model, Vec<Diagnostic>> {
+    divided(model, &mut |phase, own| {
+        let linked = Linked::new(model, structures, phase);
+        with_modes_from(&own, structures[phase], Some(linked))
+    })
 }
 
 /// The same of one of several phases, which links put where it begins.

@@ -1,6 +1,7 @@
 //! One solve of a structure: of the phases of given modes of a model, or of all phases of a model
 //! with phases at once, of which one has another structure than before.
 
+use super::slices::{Slice, slices};
 use super::start::Signals;
 use super::structure::Structure;
 use super::tuning::between_nodes::GRADES as GRADES_INSIDE;
@@ -17,7 +18,6 @@ use fdcc_runtime::nlp::{Solution as NlpSolution, Start, Status};
 use fdcc_runtime::problem::{Chain, ControlShape, Grid, Method, Order, Problem, Scheme};
 use fdcc_runtime::solve::warm_start::from_earlier;
 use fdcc_runtime::solve::{ChainOutcome, solve_chain};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// What was solved.
@@ -31,6 +31,8 @@ pub(crate) struct Joint {
 /// A phase as it is written.
 #[derive(Clone, Copy)]
 pub(crate) struct Part<'s> {
+    pub written: &'s Model,
+    /// What holds between its jumps.
     pub model: &'s Model,
     /// The smoothed problem, with the unknowns of the whole.
     pub problem: &'s Problem,
@@ -109,7 +111,7 @@ impl<'s> Search<'s> {
     where
         's: 'p,
     {
-        let own = Part { model: self.model, problem: self.problem };
+        let own = Part { written: self.written, model: self.model, problem: self.problem };
         let mut all = vec![Planned { part: own, structure, from }];
         if let Some(Among { parts, own, .. }) = self.among {
             let others = parts.iter().enumerate().filter(|it| it.0 != own);
@@ -136,20 +138,11 @@ impl<'s> Search<'s> {
     /// What was found for the phase, with what was found for the others.
     pub(super) fn located(&self, joint: Joint, planned: &[Planned]) -> Located {
         let written = self.among.map_or(0, |it| it.whole.links.len());
-        let links = &joint.model.links[..joint.model.links.len() - written];
-        let told = links.iter().filter(|it| it.objective.is_some() || !it.rows.is_empty()).count();
+        let counts = planned.iter().map(|it| it.structure.phases.len());
+        let slices = slices((&joint.model, written), &joint.chain, counts);
         let joint = Arc::new(joint);
-        let (mut all, mut phase, mut link) = (Vec::new(), 0, 0);
-        for it in planned {
-            let phases = phase..phase + it.structure.phases.len();
-            let is_own = |at: &usize| {
-                joint.chain.links[*at].ends.iter().all(|end| phases.contains(&end.phase()))
-            };
-            let count = (link..told).take_while(is_own).count();
-            let slice = Slice { phases: phases.clone(), links: link..link + count };
-            all.push(slice.located(&joint, it));
-            (phase, link) = (phases.end, link + count);
-        }
+        let own = slices.iter().zip(planned);
+        let mut all: Vec<Located> = own.map(|(slice, it)| of_slice(slice, &joint, it)).collect();
         let own = all.remove(self.among.map_or(0, |it| it.own));
         Located { beside: all, ..own }
     }
@@ -167,65 +160,30 @@ impl<'s> Search<'s> {
     }
 }
 
-/// What belongs to one phase of the model.
-struct Slice {
-    phases: Range<usize>,
-    links: Range<usize>,
-}
-
-impl Slice {
-    fn located(self, joint: &Arc<Joint>, of: &Planned) -> Located {
-        let (chain, outcome) = (&joint.chain, &joint.outcome);
-        let mut phases = outcome.phases[self.phases.clone()].to_vec();
-        let models = &joint.model.phases;
-        let added = match &models[models.len().min(self.phases.start)..] {
-            [first, ..] if self.phases.len() > 1 => first.model.boundary.len(),
-            [only, ..] => only.model.boundary.len() - of.part.model.boundary.len(),
-            [] => joint.model.boundary.len() - of.part.model.boundary.len(),
-        };
-        // The multipliers of conditions that nobody wrote are told to nobody.
-        let starts = phases[0].trajectory.end_multipliers.drain(..added).collect();
-        // All phases together have as many phases times as many numbers.
-        let mut solution = outcome.solution.without_vectors();
-        solution.multipliers.constraints = self.multipliers(joint);
-        let mut located = Located {
-            joint: Arc::clone(joint),
-            chain: Chain {
-                phases: chain.phases[self.phases].to_vec(),
-                links: chain.links[self.links].to_vec(),
-                name: chain.name.clone(),
-                unknowns: chain.unknowns.clone(),
-            },
-            outcome: ChainOutcome {
-                solution,
-                phases,
-                sigma: outcome.sigma.clone(),
-                limiting: outcome.limiting.clone(),
-                attempts: outcome.attempts.clone(),
-                ..*outcome
-            },
-            structure: of.structure.clone(),
-            beside: Vec::new(),
-            starts,
-            insertion: f64::INFINITY,
-            gain: f64::INFINITY,
-            loss: f64::INFINITY,
-            others: Vec::new(),
-        };
-        located.structure.times = located.times();
-        located
-    }
-
-    /// Those of its links; the links of all phases come last.
-    fn multipliers(&self, joint: &Joint) -> Vec<f64> {
-        let count = |links: Range<usize>| -> usize {
-            joint.chain.links[links].iter().map(|it| it.bounds.len()).sum()
-        };
-        let rows = &joint.outcome.solution.multipliers.constraints;
-        let behind = count(self.links.start..joint.chain.links.len());
-        let first = rows.len() - behind;
-        rows[first..first + count(self.links.clone())].to_vec()
-    }
+fn of_slice(slice: &Slice, joint: &Arc<Joint>, of: &Planned) -> Located {
+    let mut outcome = slice.outcome(&joint.chain, &joint.outcome);
+    let models = &joint.model.phases;
+    let added = match &models[models.len().min(slice.phases.start)..] {
+        [first, ..] if slice.phases.len() > 1 => first.model.boundary.len(),
+        [only, ..] => only.model.boundary.len() - of.part.model.boundary.len(),
+        [] => joint.model.boundary.len() - of.part.model.boundary.len(),
+    };
+    // The multipliers of conditions that nobody wrote are told to nobody.
+    let starts = outcome.phases[0].trajectory.end_multipliers.drain(..added).collect();
+    let mut located = Located {
+        joint: Arc::clone(joint),
+        chain: slice.chain(&joint.chain),
+        outcome,
+        structure: of.structure.clone(),
+        beside: Vec::new(),
+        starts,
+        insertion: f64::INFINITY,
+        gain: f64::INFINITY,
+        loss: f64::INFINITY,
+        others: Vec::new(),
+    };
+    located.structure.times = located.times();
+    located
 }
 
 impl Planned<'_> {

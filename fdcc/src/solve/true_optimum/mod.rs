@@ -43,6 +43,7 @@ mod repair;
 mod replayed;
 mod signs;
 mod simpler;
+mod slices;
 mod start;
 mod structure;
 mod switches;
@@ -60,6 +61,7 @@ pub(crate) use polynomials::beyond_bounds;
 pub(crate) use range::{Range, ranges};
 pub(crate) use repair::{is_attracted, jumps_in_the_end, wrong_sign};
 pub(crate) use replayed::replayed;
+pub(crate) use slices::{Slice, slices};
 pub(crate) use structure::variations;
 pub(crate) use tuning::certificate as certificate_limits;
 
@@ -333,9 +335,9 @@ impl Located {
         own.max(PART_AT_REST * self.largest_size())
     }
 
-    /// That of the Hamiltonian where it is largest.
+    /// That of the Hamiltonian where it is largest, in all phases of a model.
     fn largest_size(&self) -> f64 {
-        let sizes = self.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
+        let sizes = self.joint.outcome.phases.iter().map(|it| it.trajectory.hamiltonian.scale);
         sizes.fold(0.0, f64::max)
     }
 

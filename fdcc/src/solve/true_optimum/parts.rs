@@ -85,9 +85,9 @@ struct Phases<'s> {
 
 impl Phases<'_> {
     fn search(&mut self, own: usize) -> Search<'_> {
-        let Part { model, problem } = self.parts[own];
+        let Part { written, model, problem } = self.parts[own];
         Search {
-            written: model,
+            written,
             model,
             problem,
             among: Some(Among { whole: self.whole, parts: self.parts, own }),

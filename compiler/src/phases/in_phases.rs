@@ -1,30 +1,70 @@
-//! A model with phases in which each of them is a chain of phases of given modes.
+//! A model with phases in which time is divided within each of them.
 //!
 //! The phases of the chain are those of the first phase, then those of the second, and so on. The
 //! links within each come before the links that were written, which read the first and the last
 //! phase of each chain in place of the phase that they name.
 
-use super::linked::Linked;
-use super::{PhaseOfModes, with_modes_from};
+use super::with_phases;
 use crate::expressions::graph::{ById, ExprId, Graph};
+use crate::model::guess::fixed_by_a_row;
 use crate::model::{Constraint, Free, Link, Model, Phase, Place, Range, Symbol};
 use fdcc_grammar::Diagnostic;
 use fdcc_runtime::problem::End;
 use std::ops::Range as Places;
 
-/// The model in which these phases of given modes follow each other in each of its phases.
+/// The model in which exactly these jumps and [`crossings`](super::crossings()) happen in each of
+/// its phases, one after the other.
 ///
 /// # Errors
 ///
-/// What cannot be divided into phases of given modes: sums over rows of which the objective is no
-/// sum, jumps within phases.
-pub fn with_modes_in_phases(
+/// A parameter without a value.
+pub fn with_jumps_in_phases(
     model: &Model,
-    structures: &[&[PhaseOfModes]],
+    sequences: &[Vec<usize>],
+) -> Result<Model, Vec<Diagnostic>> {
+    let mut divided = divided(model, &mut |phase, own| match own.jumps.is_empty() {
+        true => Ok(own),
+        false => with_phases(&own, &sequences[phase]),
+    })?;
+    let mut pieces = divided.phases.iter_mut();
+    for (written, sequence) in model.phases.iter().zip(sequences) {
+        let open = open_states(&written.model);
+        for (j, piece) in pieces.by_ref().take(sequence.len() + 1).enumerate() {
+            // What is known of these, links say.
+            open.iter().for_each(|at| piece.model.states[*at].guess = None);
+            match j {
+                0 => {
+                    piece.place.clone_from(&written.place);
+                    // On which side of a surface it begins, links say.
+                    piece.hold_at_first = written.hold_at_first.min(written.model.path.len());
+                }
+                _ => piece.place.name = format!("{}.{}", written.place.name, piece.place.name),
+            }
+        }
+    }
+    Ok(divided)
+}
+
+/// The states of which a phase by itself knows nothing at the first time.
+fn open_states(phase: &Model) -> Vec<usize> {
+    let mut graph = phase.graph.clone();
+    let mut is_open = |at: &usize| {
+        let state = &phase.states[*at];
+        let is_silent = state.start.is_none() && state.guess.is_none();
+        is_silent && fixed_by_a_row(phase, &mut graph, Symbol::AtStart(*at)).is_none()
+    };
+    (0..phase.states.len()).filter(|at| is_open(at)).collect()
+}
+
+/// The model in which each phase, which is given the times of all, is what it is divided into.
+pub(super) fn divided(
+    model: &Model,
+    divide: &mut dyn FnMut(usize, Model) -> Result<Model, Vec<Diagnostic>>,
 ) -> Result<Model, Vec<Diagnostic>> {
     let mut chain = Chain::new(model);
-    for (phase, structure) in structures.iter().enumerate() {
-        chain.divide(phase, structure, Linked::new(model, structures, phase))?;
+    for phase in 0..model.phases.len() {
+        let own = chain.phase(phase);
+        chain.take(phase, divide(phase, own)?);
     }
     Ok(chain.into_model())
 }
@@ -45,15 +85,14 @@ impl<'m> Chain<'m> {
         Chain { written, whole, phases: Vec::new(), links: Vec::new(), places: Vec::new() }
     }
 
-    fn divide(
-        &mut self,
-        phase: usize,
-        structure: &[PhaseOfModes],
-        linked: Linked,
-    ) -> Result<(), Vec<Diagnostic>> {
+    /// A phase with the times of those before it.
+    fn phase(&self, phase: usize) -> Model {
         let mut own = self.written.phases[phase].model.clone();
         share_times(&mut own, &self.whole.frees);
-        let divided = with_modes_from(&own, structure, Some(linked))?;
+        own
+    }
+
+    fn take(&mut self, phase: usize, divided: Model) {
         let places: Vec<Place> = divided.frees.iter().map(|it| it.place.clone()).collect();
         let known = self.whole.frees.len();
         places[known..].iter().for_each(|it| add_time(&mut self.whole, it));
@@ -63,12 +102,11 @@ impl<'m> Chain<'m> {
         }
         if divided.phases.is_empty() {
             let place = self.written.phases[phase].place.clone();
-            self.phases.push(Phase { place, model: divided, holds_at_first: false });
+            self.phases.push(Phase { place, model: divided, hold_at_first: 0 });
         } else {
             self.phases.extend(divided.phases);
         }
         self.places.push(first..self.phases.len());
-        Ok(())
     }
 
     /// Copies a link within the chain of a phase, whose phases stand behind others now.

@@ -36,6 +36,24 @@ fn all() -> Vec<OnKink> {
             objective: 3.0 * BURN,
             is_global: true,
         },
+        // The same as a tariff by blocks, one knot of which is never met.
+        OnKink {
+            text: "fn c(u) = piecewise { u <= -2 => -2 - 3*u  u <= 0 => -2*u  otherwise => u }
+                time t in [0, 4]  state x start 0  state v start 0  control u in [-1, 1]
+                dynamics { x' = v  v' = u }  end x == 1  end v == 0
+                minimize integral(c(u))",
+            objective: 3.0 * BURN,
+            is_global: true,
+        },
+        // A toll of 2 for each unit of x beyond 1: u is 1/2 until there, at t = 2, then grows by 1
+        // in each unit of time.
+        OnKink {
+            text: "fn toll(x) = piecewise { x <= 1 => 0  otherwise => 2*(x - 1) }
+                time t in [0, 3]  state x start 0  control u in [-3, 3]
+                dynamics { x' = u }  end x == 2  minimize integral(u^2 + toll(x))",
+            objective: 29.0 / 12.0,
+            is_global: true,
+        },
         // u = -3/8
         OnKink {
             text: "time t in [0, 1]  state x start 1  control u in [-5, 5]  dynamics { x' = u }

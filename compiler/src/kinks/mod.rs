@@ -21,6 +21,7 @@
 //! A condition with kinks is one for each side of them, where that says the same ([`mod@sides`]).
 
 mod bent;
+mod hinges;
 mod in_phases;
 mod of_parameters;
 mod sides;
@@ -34,6 +35,7 @@ use crate::model::{
     Begins, Constraint, Control, Free, Integral, Model, Place, Range, Surface, Symbol,
 };
 use bent::Bent;
+use hinges::with_hinges;
 pub use of_parameters::parameters_on_kinks;
 
 /// What is made of kinks.
@@ -94,6 +96,21 @@ enum Kind {
     Either,
     /// Of time alone: a surface where it is located.
     Timed,
+}
+
+/// The model with sums of `max` in the place of pieces of straight lines ([`mod@hinges`]).
+fn hinged(model: &Model) -> Model {
+    let mut own = model.clone();
+    let conditions = own.path.iter().chain(&own.boundary).map(|row| row.value);
+    let roots: Vec<ExprId> = roots(&own).into_iter().chain(conditions).collect();
+    let fresh = own.symbols.len() as u32;
+    let mut hinged = with_hinges(&mut own.graph, &roots, fresh).into_iter();
+    let mut next = || hinged.next().expect("one for each root");
+    own.states.iter_mut().for_each(|it| it.rate = next());
+    own.integrals.iter_mut().for_each(|it| it.integrand = next());
+    own.objective.iter_mut().for_each(|it| it.1 = next());
+    own.path.iter_mut().chain(&mut own.boundary).for_each(|row| row.value = next());
+    own
 }
 
 /// The roots in which kinks are looked for: right sides, integrands, the objective.
@@ -171,6 +188,7 @@ impl Without {
         if is_smoothed || !model.sums.is_empty() {
             return None;
         }
+        let model = &hinged(model);
         let bent = Bent::of(model);
         if kinks == Kinks::Located && !(is_true && bent.has_more_surfaces()) {
             return None;

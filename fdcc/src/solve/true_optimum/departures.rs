@@ -4,9 +4,10 @@
 //! dJ/d delta = min over u of H, off the surface, where psi' leads there  -  H where it is held
 //! ```
 //!
-//! with the costates that are gradients of what is still to come (`costates.rs`): a state that is
-//! off the surface by little comes back. Where both are the same, as where controls cost nothing,
-//! what leads away is of second order, and a trial tells.
+//! Inside of a hold with the costates that are gradients of what is still to come (`costates.rs`):
+//! a state that is off the surface by little comes back. At the last time with those that meet the
+//! conditions there. Where both are the same, as where controls cost nothing, what leads away is of
+//! second order, and a trial tells.
 
 use super::insertion::{
     Candidate, Least, at_departure, at_point, hamiltonian_at, least, off, tried,
@@ -23,7 +24,7 @@ use fdcc_compiler::{Arc, Mode, PhaseOfModes, is_kink};
 
 /// A surface that a phase holds.
 struct HeldSurface<'l> {
-    /// With costates that are gradients.
+    /// With the costates that are meant.
     located: &'l Located,
     /// The phase.
     phase: usize,
@@ -38,13 +39,10 @@ impl Search<'_> {
     pub(super) fn departures(&self, located: &Located) -> Vec<Candidate> {
         let gradients = located.with_gradients(self.model, self.problem);
         let last = located.structure.phases.len() - 1;
-        let phases = 0..=last;
-        let holds = phases.flat_map(|j| self.holds_of_phase(&gradients, j));
-        let departures = holds.flat_map(|hold| {
-            let at_end = if hold.phase == last { self.at_the_end(&hold) } else { Vec::new() };
-            at_end.into_iter().chain(self.inside(&hold)).collect::<Vec<_>>()
-        });
-        departures.collect()
+        let in_the_end = self.holds_of_phase(located, last).into_iter();
+        let in_the_end = in_the_end.flat_map(|hold| self.at_the_end(&hold));
+        let holds = (0..=last).flat_map(|j| self.holds_of_phase(&gradients, j));
+        in_the_end.chain(holds.flat_map(|hold| self.inside(&hold))).collect()
     }
 
     /// What a phase holds, but for a `Dir` and kinks; nothing where it only touches a surface, or

@@ -391,7 +391,10 @@ fn controls_that_are_better_together_or_in_small_units_are_seen() {
     let zone = "time t in [0, 1]\nstate x start 0\ncontrol u in [-3, 3]\n\
                 dynamics { x' = piecewise { u <= -1 => u + 1\n u <= 1 => 0\n otherwise => u - 1 } \
                 }\nminimize 1e-9*(integral(0.01*u^2) + (x(end) - 1)^2)\n";
-    for text in [joint, zone] {
+    let bent = "time t in [0, 1]\nstate x start 0\ncontrol u in [-3, 3]\n\
+                dynamics { x' = max(u - 1, 0) + min(u + 1, 0) }\n\
+                minimize integral(0.01*u^2) + (x(end) - 1)^2\n";
+    for text in [joint, zone, bent] {
         let model = Model::from_text("together", text).expect("it has no mistakes");
         let solution = model.solve(&Options::default()).expect("it can be solved");
         assert!(!solution.is_certified(), "{text}: {}", solution.objective());

@@ -11,7 +11,7 @@ pub type Combination = Vec<Vec<usize>>;
 /// Sequences of each phase in all combinations, those with few jumps first; and whether there are
 /// more than are tried.
 pub fn combinations(all: &[Sequences]) -> (Vec<Combination>, bool) {
-    let most: usize = all.iter().map(|it| longest(it)).sum();
+    let most: usize = all.iter().map(longest).sum();
     let mut found = Vec::new();
     for jumps in 0..=most {
         append(all, jumps, &mut Vec::new(), &mut found);

@@ -1,7 +1,7 @@
 //! With several starts: what is certified near each of the answers that they found.
 
 use super::found::Found;
-use super::report::Options;
+use super::report::{Ended, Options};
 use super::tuning::families::{MOST_FAMILIES, SAME};
 use super::{Solution, located};
 use crate::model::Model;
@@ -33,17 +33,14 @@ pub struct Family {
 /// answer near that where none is certified.
 pub(super) fn best(model: &Model, first: Found, others: Vec<Found>, options: &Options) -> Solution {
     let starts = first.starts.clone();
-    let count = |found: &Found| {
-        let own = found.problem.sense * found.outcome.solution.objective;
-        starts.iter().filter(|it| it.is_solved && is_same(it.objective, own)).count()
-    };
-    let mut counts = vec![count(&first)];
+    let kept = [&first].into_iter().chain(others.iter().take(MOST_FAMILIES - 1));
+    let objectives = kept.map(|it| it.problem.sense * it.outcome.solution.objective);
+    let counts = counts(&starts, &objectives.collect::<Vec<_>>());
     let mut all = vec![located::solution(model, first, options)];
     if all[0].certificate.is_none() || starts.is_empty() {
         return all.remove(0);
     }
     for other in others.into_iter().take(MOST_FAMILIES - 1) {
-        counts.push(count(&other));
         all.push(located::solution(model, other, options));
     }
     let families = families(&all, &counts);
@@ -53,6 +50,16 @@ pub(super) fn best(model: &Model, first: Found, others: Vec<Found>, options: &Op
     let mut best = all.swap_remove(best);
     (best.starts, best.families) = (starts, families);
     best
+}
+
+/// How many starts lead to each of some objectives; each to the first that is its own.
+fn counts(starts: &[Ended], objectives: &[f64]) -> Vec<usize> {
+    let mut counts = vec![0; objectives.len()];
+    for start in starts.iter().filter(|it| it.is_solved) {
+        let own = objectives.iter().position(|it| is_same(start.objective, *it));
+        own.into_iter().for_each(|at| counts[at] += 1);
+    }
+    counts
 }
 
 /// One for each optimum, in the order in which they were found.

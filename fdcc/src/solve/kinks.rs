@@ -7,6 +7,7 @@
 use super::kink_gaps::{are_tight, first_price, size_of_objective};
 use super::kink_words::in_words_of;
 use super::report::{Options, Start};
+use super::true_optimum::gain_on_kinks;
 use super::tuning::kinks::{EXACT, HIGHER, MOST_PRICES};
 use super::{Compiled, Solution};
 use crate::error::Error;
@@ -137,6 +138,24 @@ fn without_nodes(record: Record) -> Record {
     record
 }
 
+/// By how much other controls make the Hamiltonian less, for the size of the objective over time,
+/// where nothing switches, jumps or is divided: elsewhere modes are needed, and what was allowed is
+/// compared alone.
+fn gain(own: &Solution) -> f64 {
+    let meaning = own.model().meaning();
+    // Of a model in which unknowns stand for other kinks, they are not among its signals.
+    let is_whole = own.problem.controls.len() == own.outcome.trajectory.controls.len();
+    let is_divided = !own.parts.is_empty() || !meaning.at_times.is_empty();
+    match !is_whole || is_divided || !meaning.surfaces.is_empty() || !meaning.jumps.is_empty() {
+        true => 0.0,
+        false => {
+            let time = own.time();
+            let gain = gain_on_kinks(meaning, &own.problem, &own.outcome);
+            gain * (time[time.len() - 1] - time[0]) / size_of_objective(own).max(f64::MIN_POSITIVE)
+        }
+    }
+}
+
 /// What the true system with its kinks does with the controls of a certified answer.
 fn replay_again(own: &mut Solution) {
     if !own.is_certified() {
@@ -153,6 +172,7 @@ fn replay_again(own: &mut Solution) {
         ("replayed", worst(|it| it.state_gap().unwrap_or(f64::INFINITY))),
         ("objective", (replayed - own.objective()).abs() / size_of_objective(own)),
         ("conditions", worst(|it| it.worst().map_or(0.0, |it| it.part))),
+        ("minimum", gain(own)),
     ];
     for check in own.certificate.iter_mut().flat_map(|it| &mut it.checks) {
         let again = figures.iter().find(|it| it.0 == check.name);

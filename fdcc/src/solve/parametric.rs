@@ -176,7 +176,8 @@ impl Solution {
 }
 
 fn not_strict(parameter: &str) -> Error {
-    let why = "the optimum is no strict minimum: it may be anywhere along some direction";
+    let why = "the optimum is no strict minimum and may be anywhere along some direction, or some \
+               of its conditions say the same";
     Error::Call(format!("no derivative by `{parameter}`: {why}"))
 }
 

@@ -119,6 +119,7 @@ impl Search<'_> {
     fn slope(&self, hold: &HeldSurface, off: &PhaseOfModes, point: usize) -> Option<f64> {
         let HeldSurface { located, phase, switch, .. } = *hold;
         let outcome = &located.outcome.phases[phase];
+        let size = located.size_of_phase(phase).max(located.least_size(self.model));
         let at = self.point(outcome, &|column| column[point]);
         let interval = point.min(outcome.trajectory.time.len() - 2);
         let controls = controls_at(&outcome.trajectory, interval, at.time);
@@ -132,7 +133,6 @@ impl Search<'_> {
         let leaving = values.min_by(f64::total_cmp)?;
         let held = &located.structure.phases[phase];
         let staying = hamiltonian_at(&at_point(self.model, held, &at)?, &controls);
-        let size = outcome.trajectory.hamiltonian.scale.max(located.least_size(self.model));
         Some((leaving - staying) / size)
     }
 }

@@ -70,7 +70,8 @@ impl Search<'_> {
         };
         let controls = controls_at(&outcome.trajectory, k, point.time);
         let Some((near, controls_near)) = value(&controls) else { return Gain::default() };
-        let others = self.samples(located, &controls);
+        let ranges = ranges(&self.problem.controls, &located.outcome.phases);
+        let others = samples(&ranges, &controls);
         let others = others.iter().filter_map(|it| value(it));
         let of_minimum = others.map(|(other, _)| near - other).fold(0.0, f64::max);
         let loss = loss(&chain, &controls, (near, &controls_near));
@@ -84,21 +85,6 @@ impl Search<'_> {
         let ranges = ranges(&self.problem.controls, &located.outcome.phases);
         let mut each = ranges.iter().zip(one.iter().zip(other));
         each.any(|(range, (a, b))| (a - b).abs() > FAR * range.width)
-    }
-
-    /// Each control at several values between its bounds, the others as they are; and all of a few
-    /// at ends of their ranges, as what one gains may depend on another.
-    fn samples(&self, located: &Located, controls: &[f64]) -> Vec<Vec<f64>> {
-        let with = |at: usize, value: f64| {
-            let mut other = controls.to_vec();
-            other[at] = value;
-            other
-        };
-        let ranges = ranges(&self.problem.controls, &located.outcome.phases);
-        let each = ranges.iter().enumerate();
-        let alone =
-            each.flat_map(|(at, range)| range.tried().into_iter().map(move |value| (at, value)));
-        alone.map(|(at, value)| with(at, value)).chain(corners(&ranges)).collect()
     }
 }
 
@@ -139,6 +125,20 @@ pub(super) fn controls_at(own: &Trajectory, k: usize, time: f64) -> Vec<f64> {
         None => own.controls[at][k],
     };
     (0..own.controls.len()).map(value).collect()
+}
+
+/// Each control at several values between its bounds, the others as they are; and all of a few at
+/// ends of their ranges, as what one gains may depend on another.
+pub(super) fn samples(ranges: &[Range], controls: &[f64]) -> Vec<Vec<f64>> {
+    let with = |at: usize, value: f64| {
+        let mut other = controls.to_vec();
+        other[at] = value;
+        other
+    };
+    let each = ranges.iter().enumerate();
+    let alone =
+        each.flat_map(|(at, range)| range.tried().into_iter().map(move |value| (at, value)));
+    alone.map(|(at, value)| with(at, value)).chain(corners(ranges)).collect()
 }
 
 /// All combinations of the ends of a few ranges.

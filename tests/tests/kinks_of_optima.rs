@@ -287,3 +287,44 @@ fn a_motion_that_is_pushed_onto_a_kink_is_no_optimum() {
     );
     assert!(!solution.is_certified(), "{}", solution.objective());
 }
+
+/// The trajectory could lie on the kink at all times, where a surface that is held keeps the
+/// unknown where it is, and no price of a gap is high: it is better off. Of one or two numbers the
+/// least is known by hand.
+#[test]
+fn an_unknown_is_not_kept_where_a_kink_is_met_throughout() {
+    let cases = [
+        ("free p in [-1, 1] guess 0", "abs(p + 1) + integral(max(x, 0))", 0.0),
+        (
+            "free p in [-1, 1] guess 0.5  free q in [-1, 1] guess 0.3",
+            "q^2 - p*q + 0.5*integral(abs(x + t))",
+            -0.25,
+        ),
+        (
+            "free p in [-1, 1] guess 0  free q in [-1, 1] guess 0.3",
+            "-integral(max(x, 0)) + abs((p - q)*x(end) - 0.25)",
+            -0.5,
+        ),
+        ("free p in [-1, 1] guess 0", "-p*p - p - 0.5*integral(abs(x - 0.3*t))", -2.175),
+    ];
+    for (unknowns, objective, least) in cases {
+        let solution = solved(&format!(
+            "{unknowns} time t in [0, 1] state x start 0 dynamics {{ x' = p }} minimize {objective}"
+        ));
+        let off = (solution.objective() - least).abs();
+        assert!(solution.status().is_solved(), "{objective}: {}", solution.status_name());
+        assert!(off < 1e-6, "{objective}: {}", solution.objective());
+    }
+}
+
+/// `x' = u - max(x, 0)` with `x = 0.3` at 1: `u = x' + x` costs least where `x` grows like
+/// `sinh(t)` and then falls like `sinh(2 - t)`: `0.18 coth(1)`.
+#[test]
+fn a_kink_of_states_beside_a_condition_at_a_time() {
+    let solution = solved(
+        "time t in [0, 2] state x start 0 control u in [-4, 4] dynamics { x' = u - max(x, 0) }
+         at 1: x == 0.3 end x == 0 minimize integral(u^2)",
+    );
+    let off = (solution.objective() - 0.18 / 1.0_f64.tanh()).abs();
+    assert!(solution.status().is_solved() && off < 1e-6, "{}", solution.objective());
+}

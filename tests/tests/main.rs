@@ -54,6 +54,7 @@ mod located_fits;
 mod manual;
 mod models;
 mod orders;
+mod other_multipliers;
 mod parametric;
 mod phases;
 mod polynomial_controls;

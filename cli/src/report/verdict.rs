@@ -260,7 +260,10 @@ fn sensitivities(document: &Document) -> impl Iterator<Item = String> {
         let value = values.get(name.as_str()).copied().unwrap_or(f64::NAN);
         let at = document.units.value(name, value, 6);
         if slope.is_nan() {
-            return format!(" if    {name} = {at} changes, the objective has a kink");
+            return format!(
+                " if    {name} = {at} changes, the objective has no derivative: a kink, or \
+                            conditions that depend on each other"
+            );
         }
         let percent = 0.01 * value * slope;
         let percent = if percent == 0.0 || !percent.is_finite() {

@@ -63,6 +63,8 @@ pub fn without_kinks(model: &Model, kinks: Kinks, is_true: bool) -> Option<Model
     if !model.phases.is_empty() {
         return in_phases::without(model, kinks, is_true);
     }
+    // Conditions at times are not known beside surfaces.
+    let is_true = is_true && model.at_times.is_empty();
     // Without an objective nothing draws the unknowns to their bounds.
     let is_asked = model.not_yet.is_empty() && model.objective.is_some();
     let without = is_asked.then(|| Without::of(model, kinks, is_true, 0)).flatten();

@@ -2,7 +2,7 @@
 
 use super::Solution;
 use super::shown::path_conditions;
-use super::tuning::kinks::{LOOSE, NOTHING, PRICE, ROUNDING, TIGHT};
+use super::tuning::kinks::{LEAST, LOOSE, NOTHING, PRICE, ROUNDING, TIGHT};
 use fdcc_compiler::is_kink;
 use fdcc_runtime::problem::{Columns, Problem, Variable};
 use fdcc_runtime::solution::Trajectory;
@@ -13,7 +13,7 @@ struct Gap {
     least: f64,
     /// The larger of both.
     largest: f64,
-    /// `e^2`
+    /// `e^2`, and more than nothing.
     square: f64,
     /// The part of the larger that the lesser may be.
     limit: f64,
@@ -22,8 +22,11 @@ struct Gap {
 }
 
 impl Gap {
-    fn new(limit: f64, unit: f64) -> Self {
-        Gap { least: 0.0, largest: 0.0, square: 0.0, limit, nothing: ROUNDING * unit }
+    /// For a time of this `duration`. On a kink throughout both conditions are 0, and no price is
+    /// high.
+    fn new(limit: f64, (unit, duration): (f64, f64)) -> Self {
+        let (square, nothing) = ((LEAST * unit).powi(2) * duration, ROUNDING * unit * duration);
+        Gap { least: 0.0, largest: 0.0, square, limit, nothing }
     }
 
     fn add(&mut self, q: f64, row: f64, duration: f64) {
@@ -49,7 +52,7 @@ fn gaps_of(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
     let gap = |(control, unknown): (&Variable, &Vec<f64>)| {
         let row = rows.iter().find(|it| is_kink(&it.name) && it.name == control.name)?;
         let time = &trajectory.time;
-        let mut gap = Gap::new(limit, control.unit * (time[time.len() - 1] - time[0]));
+        let mut gap = Gap::new(limit, (control.unit, time[time.len() - 1] - time[0]));
         for ((q, row), pair) in unknown.iter().zip(&row.values[1..]).zip(time.windows(2)) {
             gap.add(*q, *row, pair[1] - pair[0]);
         }
@@ -80,7 +83,7 @@ fn gaps_of_ends(problem: &Problem, trajectory: &Trajectory) -> Vec<Gap> {
         let parameter = &problem.parameters[at];
         let row =
             (1..boundary.outputs()).find(|row| *boundary.origin(*row).label == *parameter.name)?;
-        let mut gap = Gap::new(TIGHT, parameter.unit);
+        let mut gap = Gap::new(TIGHT, (parameter.unit, 1.0));
         gap.add(trajectory.parameters[at], values.column(row)[0], 1.0);
         Some(gap)
     };

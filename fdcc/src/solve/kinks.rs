@@ -8,7 +8,7 @@ use super::kink_gaps::{are_tight, first_price, size_of_objective};
 use super::kink_words::in_words_of;
 use super::report::{Options, Start};
 use super::true_optimum::gain_on_kinks;
-use super::tuning::kinks::{EXACT, HIGHER, MOST_PRICES};
+use super::tuning::kinks::{EXACT, HIGHER, MOST_PRICES, WORSE};
 use super::{Compiled, Solution};
 use crate::error::Error;
 use crate::model::Model;
@@ -29,16 +29,25 @@ pub(super) fn solve(
     };
     let start = record.as_ref().map_or(options.start, Start::Record);
     let found = without.solve_from(&Options { start, ..*options })?;
-    let (was_certified, first) = match certified(own, &found) {
-        Some(first) => (true, first),
+    let (found, price, first) = match certified(own, &found) {
+        Some(first) => (found, None, first),
         None => {
-            let Some(found) = tight(own, found, options)? else { return Ok(None) };
-            (found.is_certified(), with_kinks(own, found))
+            let Some(Tight { found, price }) = tight(own, found, options)? else { return Ok(None) };
+            (found.clone(), price, with_kinks(own, found))
         }
     };
     // What the replay with its kinks contradicts is none.
-    let is_lost = was_certified && !first.is_certified();
-    Ok(located(own, &first, options)?.or((!is_lost).then_some(first)))
+    let is_lost = found.is_certified() && !first.is_certified();
+    if let Some(located) = located(own, &first, options)? {
+        return Ok(Some(located));
+    }
+    if is_lost { exact(own, Tight { found, price }, options) } else { Ok(Some(first)) }
+}
+
+/// An answer without gaps, as far as one can see, and what they cost there.
+struct Tight {
+    found: Solution,
+    price: Option<f64>,
 }
 
 /// A certified answer whose replay with its kinks has the same objective: that is what was allowed
@@ -61,32 +70,58 @@ pub(super) fn in_time(
 
 /// The first answer without gaps: as it was found, or certified at a price. What has gaps has no
 /// objective of the model, so it is none.
-fn tight(own: &Compiled, found: Solution, options: &Options) -> Result<Option<Solution>, Error> {
+fn tight(own: &Compiled, found: Solution, options: &Options) -> Result<Option<Tight>, Error> {
     if is_end(&found, options) {
-        return Ok(Some(found));
+        return Ok(Some(Tight { found, price: None }));
     }
     let is_lost = matches!(found.status(), Status::Infeasible);
     if is_lost || own.model.names_its_discretisation() {
         return Ok(None);
     }
-    let (mut found, mut price) = (found, None);
+    let price = first_price(&found);
+    at_prices(own, found, options, price)
+}
+
+/// What is certified without gaps, at the first price at which there is anything.
+fn at_prices(
+    own: &Compiled,
+    mut found: Solution,
+    options: &Options,
+    mut price: f64,
+) -> Result<Option<Tight>, Error> {
     for _ in 0..MOST_PRICES {
-        let next = price.map_or_else(|| first_price(&found), |it: f64| it * HIGHER);
-        let Some(model) = own.model.without_kinks(Kinks::Priced(next)) else { break };
-        price = Some(next);
+        let Some(model) = own.model.without_kinks(Kinks::Priced(price)) else { break };
         found = near(&model, &found, options)?;
         if found.is_certified() && is_end(&found, options) {
-            return Ok(Some(found));
+            return Ok(Some(Tight { found, price: Some(price) }));
         }
         if (options.stop)().is_break() {
             break;
         }
+        price *= HIGHER;
+    }
+    Ok(None)
+}
+
+/// Gaps that are nearly none may still be worth something: an answer at a higher price that is
+/// certified with its kinks, too.
+fn exact(own: &Compiled, mut tight: Tight, options: &Options) -> Result<Option<Solution>, Error> {
+    for _ in 0..MOST_PRICES {
+        let Some(price) = tight.price else { break };
+        let next = at_prices(own, tight.found, options, HIGHER * price)?;
+        let Some(next) = next else { break };
+        let first = with_kinks(own, next.found.clone());
+        if first.is_certified() {
+            return Ok(Some(first));
+        }
+        tight = next;
     }
     Ok(None)
 }
 
 /// The certified answer in which surfaces stand for kinks of states; nothing where what was found
-/// is as good.
+/// is as good, or clearly better: a surface that is held throughout keeps unknowns where they are,
+/// whatever they would be worth off it.
 fn located(own: &Compiled, first: &Solution, options: &Options) -> Result<Option<Solution>, Error> {
     let replayed = first.certificate.as_ref().and_then(|it| it.figure("objective"));
     let is_exact = first.is_certified() && replayed.is_some_and(|it| it < EXACT);
@@ -98,7 +133,9 @@ fn located(own: &Compiled, first: &Solution, options: &Options) -> Result<Option
     // What is convex in unknowns that are as small as they can be is convex without them.
     let is_convex = first.outcome.solution.global && found.problem.is_autonomous;
     found.outcome.solution.global = is_convex;
-    Ok(Some(found).filter(Solution::is_certified))
+    let rise = own.problem.sense * (found.objective() - first.objective());
+    let is_worse = rise > WORSE * size_of_objective(first).max(size_of_objective(&found));
+    Ok(Some(found).filter(|it| it.is_certified() && !is_worse))
 }
 
 /// Solves from what was found for other kinks.

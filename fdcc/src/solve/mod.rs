@@ -267,20 +267,31 @@ impl Compiled {
         Ok(if is_taken { second } else { first })
     }
 
-    /// What a scheme of high order finds where that of our choice finds nothing that is feasible:
-    /// in continuous time there may be what implicit Euler damps, or is late for.
+    /// What a scheme of high order finds where that of our choice finds nothing that is feasible,
+    /// or comes to no end: in continuous time there may be what implicit Euler damps, or is late
+    /// for. Where nothing is certified near what it found, what is certified near the other.
     fn with_other_scheme(&self, first: Solution, options: &Options) -> Result<Solution, Error> {
         let meaning = self.model.meaning();
         let is_ours = !meaning.method.names_scheme && !self.model.names_its_discretisation();
-        let phases = meaning.phases.iter().map(|it| &it.model);
-        let is_smooth = [meaning].into_iter().chain(phases).all(|it| it.surfaces.is_empty());
-        let is_lost = *first.status() == Status::Infeasible;
-        if !is_ours || !is_smooth || !is_lost || (options.stop)().is_break() {
+        let phases = || [meaning].into_iter().chain(meaning.phases.iter().map(|it| &it.model));
+        let is_smooth = phases().all(|it| it.surfaces.is_empty());
+        let is_lost = match first.status() {
+            Status::Infeasible => is_smooth,
+            Status::IterationLimit | Status::NumericalFailure => true,
+            _ => false,
+        };
+        let is_missing = first.certificate.as_ref().is_some_and(|it| !it.is_certified());
+        let is_jumping = phases().any(|it| !it.jumps.is_empty());
+        if !is_ours || is_jumping || !(is_lost || is_missing) || (options.stop)().is_break() {
             return Ok(first);
         }
         let other = self.model.with_method("scheme", OTHER_SCHEME)?;
         let second = other.compile_as_it_is(None)?.solve_once(options)?;
-        Ok(if second.status().is_solved() { second } else { first })
+        let is_taken = match is_missing {
+            true => second.is_certified() && !is_far_worse(&second, &first),
+            false => second.status().is_solved(),
+        };
+        Ok(if is_taken { second } else { first })
     }
 
     /// Where time is divided at certain times, or at jumps.

@@ -166,12 +166,26 @@ impl Solution {
             let times = outcome.phases[own.clone()].iter().map(|it| &it.trajectory.time[..]);
             let times: Vec<&[f64]> = times.collect();
             let begins = times.iter().zip(&all[own.clone()]).skip(1);
-            junctions.extend(begins.map(|(time, it)| (time[0], it.time[0])));
+            let junction = |(time, it): (&&[f64], &Movement)| (time[0], it.time[0]);
+            let own_junctions = begins.enumerate().filter(|it| part.is_junction(it.0 + 1));
+            junctions.extend(own_junctions.map(|it| junction(it.1)));
             phases.push(joined(phase, &part.problem, (&times, &all[own])));
             first += count;
         }
         let (parameter, unknowns) = (parameter.to_string(), unknowns.collect());
         ParametricSensitivity { parameter, unknowns, junctions, phases }
+    }
+}
+
+impl Solution {
+    /// Whether anything changes where a phase of a located optimum begins: some have intervals of
+    /// another length only.
+    fn is_junction(&self, phase: usize) -> bool {
+        let structure = self.located.as_ref().map(|it| &it.structure.phases);
+        structure.is_none_or(|all| match all.get(phase - 1..=phase) {
+            Some([before, own]) => !own.is_alike(before),
+            _ => true,
+        })
     }
 }
 

@@ -6,6 +6,7 @@ use super::phases::Whole;
 use super::report::{Ended, Options};
 use super::true_optimum::{Certificate, Located};
 use super::tuning::search::INFEASIBLE;
+use super::tuning::solution::{NOT_UNIQUE, NOTHING};
 use crate::error::Error;
 use crate::model::Model;
 use crate::names::status_name;
@@ -16,7 +17,7 @@ use fdcc_grammar::Diagnostic;
 use fdcc_runtime::nlp::Status;
 use fdcc_runtime::problem::{Chain, Problem, Variable};
 use fdcc_runtime::solution::by_parameters;
-use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain};
+use fdcc_runtime::solve::{ChainOutcome, Outcome, by_parameters_of_chain, with_other_multipliers};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
@@ -305,22 +306,23 @@ impl Solution {
     }
 
     /// The derivative of the optimal objective by each parameter, by its multipliers; nothing
-    /// without an objective, NaN where that has a kink.
+    /// without an objective, NaN where that has a kink, or where conditions that depend on each
+    /// other leave open what each of them is worth.
     pub fn sensitivities(&self) -> Vec<(&str, f64)> {
         let params = &self.model.meaning().params;
         if params.is_empty() || !self.problem.has_objective {
             return Vec::new();
         }
-        let found = match self.in_phases() {
-            Some((model, chain, outcome)) if !model.phases.is_empty() => {
-                let by = compile_chain_by_parameters(model);
-                by.map(|by| by_parameters_of_chain(chain, outcome, &by))
+        let single;
+        let (model, chain, outcome) = match self.in_phases() {
+            Some((model, chain, outcome)) => (model, chain.clone(), outcome),
+            None => {
+                single = ChainOutcome::single(self.outcome.clone());
+                (self.model.meaning(), Chain::single(self.problem.clone()), &single)
             }
-            Some((model, chain, outcome)) => of_one(model, &chain.phases[0], &outcome.phases[0]),
-            None => of_one(self.model.meaning(), &self.problem, &self.outcome),
         };
         let names = params.iter().map(|param| param.place.name.as_str());
-        let mut found = found.unwrap_or_default();
+        let mut found = by_multipliers(model, &chain, outcome).unwrap_or_default();
         found.iter_mut().zip(&self.of_holds).for_each(|(sum, more)| *sum += more);
         for at in parameters_on_kinks(self.model.meaning()) {
             found.iter_mut().skip(at).take(1).for_each(|it| *it = f64::NAN);
@@ -329,14 +331,35 @@ impl Solution {
     }
 }
 
-/// The derivatives of an optimum of one phase.
-fn of_one(
+/// The derivatives of an optimum, by its multipliers; NaN of what depends on which of several sets
+/// of multipliers these are.
+fn by_multipliers(
     model: &fdcc_compiler::Model,
-    problem: &Problem,
-    outcome: &Outcome,
+    chain: &Chain,
+    outcome: &ChainOutcome,
 ) -> Result<Vec<f64>, Vec<Diagnostic>> {
-    let by = compile_by_parameters(model)?;
-    Ok(by_parameters(problem, &outcome.solution, &outcome.trajectory.parameters, &by))
+    let slopes: Box<dyn Fn(&ChainOutcome) -> Vec<f64>> = if model.phases.is_empty() {
+        let by = compile_by_parameters(model)?;
+        Box::new(move |it| {
+            let Outcome { solution, trajectory, .. } = &it.phases[0];
+            by_parameters(&chain.phases[0], solution, &trajectory.parameters, &by)
+        })
+    } else {
+        let by = compile_chain_by_parameters(model)?;
+        Box::new(move |it| by_parameters_of_chain(chain, it, &by))
+    };
+    let mut found = slopes(outcome);
+    let others = with_other_multipliers(chain, outcome).map(|other| slopes(&other));
+    let nothing = NOTHING * outcome.solution.objective.abs();
+    let parameters = &chain.phases[0].parameters;
+    for ((own, other), it) in found.iter_mut().zip(others.into_iter().flatten()).zip(parameters) {
+        let size = if it.value == 0.0 { it.unit } else { it.value.abs() };
+        let least = (NOT_UNIQUE * own.abs().max(other.abs())).max(nothing / size);
+        if (*own - other).abs() > least {
+            *own = f64::NAN;
+        }
+    }
+    Ok(found)
 }
 
 fn jump(it: &Jump) -> JumpRecord<'_> {

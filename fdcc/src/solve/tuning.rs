@@ -20,6 +20,13 @@ pub(super) mod magnitudes {
     pub(crate) const MOST: usize = 4;
 }
 
+pub(super) mod solution {
+    /// What other multipliers change by more than this part of itself is not determined.
+    pub(crate) const NOT_UNIQUE: f64 = 1e-6;
+    /// So is what changes the objective by more than this part, for all of the parameter.
+    pub(crate) const NOTHING: f64 = 1e-9;
+}
+
 pub(super) mod parametric {
     /// By how much of its value, or of its unit, a parameter differs between two programs.
     pub(crate) const CHANGE: f64 = 1e-5;
@@ -34,6 +41,9 @@ pub(super) mod kinks {
     pub(crate) const LOOSE: f64 = 0.02;
     /// A smaller part of a unit is none.
     pub(crate) const ROUNDING: f64 = 1e-7;
+    /// For a first price conditions are at least this part of a unit: beside a price without a
+    /// limit nothing else counts.
+    pub(crate) const LEAST: f64 = 1e-2;
     /// What gaps cost at first, for what the objective is.
     pub(crate) const PRICE: f64 = 10.0;
     /// A smaller objective says nothing of what prices are high: one of its units does then.
@@ -43,6 +53,9 @@ pub(super) mod kinks {
     pub(crate) const MOST_PRICES: usize = 4;
     /// Where the objective of the replay differs by more, surfaces are tried in place of unknowns.
     pub(crate) const EXACT: f64 = 1e-8;
+    /// What is worse by more than this part of the objective is no better description of the same
+    /// optimum.
+    pub(crate) const WORSE: f64 = 0.05;
 }
 
 pub(super) mod search {
@@ -51,8 +64,8 @@ pub(super) mod search {
     pub(crate) const OTHER_KERNEL: &str = "sqrt";
     /// What is certified there is no answer where it is worse by this part.
     pub(crate) const FAR_WORSE: f64 = 0.5;
-    /// Where nothing is feasible with the scheme of our choice: one of high order that damps what
-    /// is stiff.
+    /// Where nothing is found with the scheme of our choice: one of high order that damps what is
+    /// stiff.
     pub(crate) const OTHER_SCHEME: &str = "radau3";
     /// Where nothing is found from the guess so many starts are tried, with that.
     pub(crate) const STARTS: usize = 5;

@@ -314,7 +314,7 @@ impl System {
 }
 
 /// One over the square of the size of each variable, or of its unit.
-fn springs_of_sizes(nlp: &dyn Nlp, v: &[f64]) -> Vec<f64> {
+pub(super) fn springs_of_sizes(nlp: &dyn Nlp, v: &[f64]) -> Vec<f64> {
     let quantities = nlp.quantities();
     let units = quantities.variables.iter().map(|it| quantities.units[*it]);
     let spring = |(value, unit): (&f64, f64)| value.abs().max(unit).max(TINY).powi(-2);
@@ -323,14 +323,19 @@ fn springs_of_sizes(nlp: &dyn Nlp, v: &[f64]) -> Vec<f64> {
 
 /// `z / distance` of a bound, 0 of none and of one that is not active: what its multiplier is
 /// worth, as a part of the objective, is less than the distance, as a part of the size.
-fn spring(distance: f64, multiplier: f64, (size, worth): (f64, f64)) -> f64 {
+pub(super) fn spring(distance: f64, multiplier: f64, (size, worth): (f64, f64)) -> f64 {
     let (distance, size) = (distance.max(TINY), size.max(distance).max(TINY));
     let is_active = multiplier * size / worth > distance / size;
     if distance.is_finite() && is_active { multiplier / distance } else { 0.0 }
 }
 
 /// For each row the largest of its terms, as far as it is linear.
-fn sizes_of_rows(structure: &Triplets, jacobian: &[f64], v: &[f64], rows: usize) -> Vec<f64> {
+pub(super) fn sizes_of_rows(
+    structure: &Triplets,
+    jacobian: &[f64],
+    v: &[f64],
+    rows: usize,
+) -> Vec<f64> {
     let mut sizes = vec![0.0_f64; rows];
     for ((row, column), slope) in structure.entries().zip(jacobian) {
         sizes[row] = sizes[row].max((slope * v[column]).abs());
@@ -340,7 +345,12 @@ fn sizes_of_rows(structure: &Triplets, jacobian: &[f64], v: &[f64], rows: usize)
 
 /// `distance / z` of a row from the bound that its multiplier belongs to; with its value stands the
 /// size of its terms.
-fn slack(bounds: &Bounds, (value, terms): (f64, f64), multiplier: f64, worth: f64) -> f64 {
+pub(super) fn slack(
+    bounds: &Bounds,
+    (value, terms): (f64, f64),
+    multiplier: f64,
+    worth: f64,
+) -> f64 {
     if bounds.is_equality() {
         return 0.0;
     }

@@ -16,6 +16,7 @@ mod curvature;
 mod implied;
 pub mod interior_point;
 pub(crate) mod multiplier_estimate;
+pub(crate) mod other_multipliers;
 pub(crate) mod parametric;
 mod scaling;
 #[cfg(test)]

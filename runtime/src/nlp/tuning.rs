@@ -63,6 +63,22 @@ pub(crate) mod covariance {
     pub(crate) const SMALL: f64 = 0.1;
 }
 
+pub(crate) mod other_multipliers {
+    /// How soft rows are, beside the springs of their variables.
+    pub(crate) const SOFT: f64 = 1e-10;
+    /// A row that gives way by as much is not active.
+    pub(crate) const OFF: f64 = 1e20;
+    /// Each makes what is no dependence as many times smaller as rows are soft.
+    pub(crate) const STEPS: usize = 2;
+    /// Of a random combination of rows a dependence leaves at least this part.
+    pub(crate) const LARGEST: f64 = 1e-4;
+    /// What a dependence adds up to, as a part of its terms, is less than this: of an unstable
+    /// plant rows are nearly dependent, and multipliers are large, but unique.
+    pub(crate) const WRONG: f64 = 1e-11;
+    /// No multiplier of an inequality loses more than this part of what it is.
+    pub(crate) const SHORT: f64 = 0.5;
+}
+
 pub(crate) mod factors {
     /// Quantities up to this size, and down to its inverse, are moderate.
     pub(crate) const MODERATE: f64 = 16.0;

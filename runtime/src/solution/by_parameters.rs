@@ -37,7 +37,7 @@ pub(crate) fn by_parameters_of_part(
     let mut at_start = slopes[nlp.chain().state(0)].to_vec();
     at_start.iter_mut().zip(linked).for_each(|(slope, more)| *slope += more);
     let mut solution = solution.clone();
-    minimum::add_multipliers_of_fixed(&nlp, &slopes, &mut solution.multipliers.lower);
+    minimum::set_multipliers_of_fixed(&nlp, &slopes, &mut solution.multipliers);
     let rows = nlp.rows(&solution.v, &solution.multipliers.constraints);
     Lagrangian::new(problem, &nlp, &solution).by_parameters(by, &at_start, &rows)
 }

@@ -18,7 +18,7 @@
 //! gained.
 
 use super::outcome::Outcome;
-use crate::nlp::{Derivatives, Nlp, Solution};
+use crate::nlp::{Derivatives, Multipliers, Nlp, Solution};
 use crate::problem::{Bounds, Problem, Variable};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
@@ -108,12 +108,12 @@ pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> 
     gradient
 }
 
-/// Gives a control whose bounds are equal, which no solver sees, the multiplier that its value has:
-/// the slope.
-pub(crate) fn add_multipliers_of_fixed(nlp: &TranscribedNlp, slopes: &[f64], lower: &mut [f64]) {
+/// Gives a control whose bounds are equal the multiplier that its value has: the slope. The
+/// interior point method does not see it, the conic solver has a multiplier of its own for it.
+pub(crate) fn set_multipliers_of_fixed(nlp: &TranscribedNlp, slopes: &[f64], of: &mut Multipliers) {
     for control in 0..nlp.problem().controls.len() {
         let fixed = variables(nlp, control).filter(|it| nlp.variable_bounds()[it.1].is_equality());
-        fixed.for_each(|(_, at)| lower[at] = slopes[at]);
+        fixed.for_each(|(_, at)| (of.lower[at], of.upper[at]) = (slopes[at], 0.0));
     }
 }
 

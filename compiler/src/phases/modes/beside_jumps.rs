@@ -63,7 +63,7 @@ impl Modes<'_> {
         for row in free {
             let is_slow = match rates(&moving, &mut self.between.division.graph, row.value) {
                 Some(rates) => rates.len() > 1,
-                None => self.is_open(&moving, row.value),
+                None => self.is_open(j, &moving, row.value),
             };
             rows.extend(is_slow.then(|| row.clone()));
         }

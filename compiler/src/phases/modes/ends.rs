@@ -78,7 +78,7 @@ impl Modes<'_> {
             let rates = rates(&moving, &mut self.between.division.graph, row.value);
             let is_moved = match rates {
                 Some(rates) => rates.len() > 1,
-                None => self.is_open(&moving, row.value),
+                None => self.is_open(self.phases.len() - 1, &moving, row.value),
             };
             if is_moved && known.clone().add(self, value) {
                 let name = format!("{} at the end", row.place.name);

@@ -103,16 +103,23 @@ pub struct PhaseOfModes {
 impl PhaseOfModes {
     /// Whether it is the same as the phase before it, and nothing happens between them.
     pub fn goes_on(&self, before: &Self) -> bool {
-        let is_same = self.modes == before.modes && self.arcs == before.arcs;
-        let is_touched = self.touches.iter().any(|it| *it != Arc::Free);
-        is_same
-            && self.contacts == before.contacts
+        self.is_alike(before)
             && self.shape == before.shape
             && self.halvings == before.halvings
             && self.is_graded == before.is_graded
             && self.steep == before.steep
+    }
+
+    /// Whether nothing happens between the phase before it and itself, which may only be on other
+    /// intervals.
+    pub fn is_alike(&self, before: &Self) -> bool {
+        let is_same = self.modes == before.modes && self.arcs == before.arcs;
+        let is_touched = self.touches.iter().any(|it| *it != Arc::Free);
+        let is_given = !self.arcs.contains(&Arc::Free) && !self.modes.contains(&Mode::Held);
+        is_same
+            && self.contacts == before.contacts
             && !is_touched
-            && !self.is_cut
+            && (!self.is_cut || is_given)
             && self.jump.is_none()
     }
 

@@ -92,18 +92,34 @@ impl Modes<'_> {
         model.states[state].start.is_none_or(|start| self.reads_unknown(start))
     }
 
+    /// What the jumps until the beginning of phase `j` assign to a state.
+    fn resets_until(&self, j: usize, state: usize) -> Vec<ExprId> {
+        let jumps = (0..j).filter(|at| self.phases[at + 1].jump.is_some());
+        let resets = jumps.flat_map(|at| &self.between.jump(at).resets);
+        resets.filter(|it| it.0 == state).map(|it| it.1).collect()
+    }
+
+    /// Whether it reads an unknown, or a control, as a reset may.
+    fn reads_chosen(&self, value: ExprId) -> bool {
+        let symbols = &self.between.division.symbols;
+        let inputs = self.between.division.graph.inputs_of(&[value]);
+        let is_control = |at: &u32| matches!(symbols[*at as usize], Symbol::Control(_));
+        self.reads_unknown(value) || inputs.iter().any(is_control)
+    }
+
     fn reads_unknown(&self, value: ExprId) -> bool {
         let symbols = &self.between.division.symbols;
         let inputs = self.between.division.graph.inputs_of(&[value]);
         inputs.iter().any(|at| matches!(symbols[*at as usize], Symbol::Free(_)))
     }
 
-    /// Whether unknowns or starts that are chosen move a value on which no control acts.
-    pub(super) fn is_open(&self, moving: &Model, value: ExprId) -> bool {
+    /// Whether unknowns or starts that are chosen move a value of phase `j` on which no control
+    /// acts there: along the motion, or where jumps before it reset what it depends on.
+    pub(super) fn is_open(&self, j: usize, moving: &Model, value: ExprId) -> bool {
         let ends = moving.interval.iter().any(|it| self.reads_unknown(*it));
         let (mut seen, mut all) = (Vec::new(), vec![value]);
         while let Some(next) = all.pop() {
-            if ends || self.reads_unknown(next) {
+            if ends || self.reads_chosen(next) {
                 return true;
             }
             for at in self.between.division.graph.inputs_of(&[next]) {
@@ -116,6 +132,7 @@ impl Modes<'_> {
                 if !seen.contains(&state) {
                     seen.push(state);
                     all.push(moving.states[state].rate);
+                    all.extend(self.resets_until(j, state));
                 }
             }
         }

@@ -1,19 +1,21 @@
-//! Sums over the values of a matrix, each a list of terms that is the same for all intervals.
+//! Sums over the values of a matrix, each a list of terms that is the same for all intervals of a
+//! chain.
 
 use super::sight::{BATCH, NOTHING, Numbers, Sight};
 use crate::linalg::dense::lanes::multiply_add;
 use crate::linalg::structure::triplets::{Family, Triplets};
 use std::ops::Range;
 
-/// Sums over the values of one matrix.
+/// Sums over the values of one matrix that belong to one chain.
 #[derive(Default)]
 pub(super) struct Sums {
     terms: Vec<Term>,
     /// Behind the last term of each sum.
     ends: Vec<u32>,
-    /// Entries that belong to no interval, each with its place among the values.
-    others: Vec<(Family, usize)>,
 }
+
+/// Entries of a matrix, each family with its place among the values.
+pub(super) struct Entries(Vec<(Family, usize)>);
 
 /// `values[source + k]` times a number that interval `k` sees.
 #[derive(Clone, Copy)]
@@ -22,26 +24,35 @@ struct Term {
     seen: u32,
 }
 
-impl Sums {
-    pub(super) fn new(
-        sight: Sight,
-        matrix: &Triplets,
+impl Entries {
+    pub(super) fn new(matrix: &Triplets) -> Self {
+        let mut source = 0;
+        let with_place = |family: &Family| {
+            source += family.count;
+            (*family, source - family.count)
+        };
+        Entries(matrix.families.iter().map(with_place).collect())
+    }
+
+    /// Takes out those that belong to the intervals of a chain; `places` are what they connect
+    /// there.
+    pub(super) fn sums(
+        &mut self,
+        sight: &Sight,
         places: impl Fn(&Family) -> Option<[usize; 2]>,
-    ) -> Self {
-        let (mut sums, mut source) = (Sums::default(), 0);
+    ) -> Sums {
         let mut terms = vec![Vec::new(); sight.len()];
-        for family in &matrix.families {
-            match places(family).filter(|_| family.count == sight.stages.intervals) {
-                Some([a, b]) => {
-                    terms[a].push(Term { source, seen: b as u32 });
-                    if a != b {
-                        terms[b].push(Term { source, seen: a as u32 });
-                    }
-                }
-                None => sums.others.push((*family, source as usize)),
+        self.0.retain(|(family, source)| {
+            let is_whole = family.count == sight.chain.stages.intervals;
+            let Some([a, b]) = places(family).filter(|_| is_whole) else { return true };
+            let term = |seen: usize| Term { source: *source as u32, seen: seen as u32 };
+            terms[a].push(term(b));
+            if a != b {
+                terms[b].push(term(a));
             }
-            source += family.count as u32;
-        }
+            false
+        });
+        let mut sums = Sums::default();
         for terms in terms {
             sums.terms.extend(terms);
             sums.ends.push(sums.terms.len() as u32);
@@ -49,6 +60,21 @@ impl Sums {
         sums
     }
 
+    /// Calls `action(value, row, column)` for every entry that is left.
+    pub(super) fn each(&self, values: &[f64], mut action: impl FnMut(f64, usize, usize)) {
+        for (family, source) in &self.0 {
+            for (k, value) in values[*source..][..family.count].iter().enumerate() {
+                action(
+                    *value,
+                    family.row + k * family.row_step,
+                    family.column + k * family.column_step,
+                );
+            }
+        }
+    }
+}
+
+impl Sums {
     /// Adds the terms of the values of a batch of intervals to the first sums.
     #[inline(always)]
     pub(super) fn add<const FUSED: bool>(
@@ -75,19 +101,6 @@ impl Sums {
                 }
             }
             (*found, first) = (sum, *end as usize);
-        }
-    }
-
-    /// Calls `action(value, row, column)` for every entry that belongs to no interval.
-    pub(super) fn each_other(&self, values: &[f64], mut action: impl FnMut(f64, usize, usize)) {
-        for (family, source) in &self.others {
-            for (k, value) in values[*source..][..family.count].iter().enumerate() {
-                action(
-                    *value,
-                    family.row + k * family.row_step,
-                    family.column + k * family.column_step,
-                );
-            }
         }
     }
 }

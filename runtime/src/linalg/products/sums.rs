@@ -29,23 +29,25 @@ impl Sums {
         places: impl Fn(&Family) -> Option<[usize; 2]>,
     ) -> Self {
         let (mut sums, mut source) = (Sums::default(), 0);
-        let mut terms = vec![Vec::new(); sight.len()];
+        // Each with its sum; as many as there may be.
+        let mut terms: Vec<(usize, Term)> = Vec::with_capacity(2 * matrix.families.len());
         for family in &matrix.families {
             match places(family).filter(|_| family.count == sight.stages.intervals) {
                 Some([a, b]) => {
-                    terms[a].push(Term { source, seen: b as u32 });
+                    terms.push((a, Term { source, seen: b as u32 }));
                     if a != b {
-                        terms[b].push(Term { source, seen: a as u32 });
+                        terms.push((b, Term { source, seen: a as u32 }));
                     }
                 }
                 None => sums.others.push((*family, source as usize)),
             }
             source += family.count as u32;
         }
-        for terms in terms {
-            sums.terms.extend(terms);
-            sums.ends.push(sums.terms.len() as u32);
-        }
+        // Those of a sum stay in their order.
+        terms.sort_by_key(|(sum, _)| *sum);
+        let end = |sum: usize| terms.partition_point(|it| it.0 <= sum) as u32;
+        sums.ends = (0..sight.len()).map(end).collect();
+        sums.terms = terms.into_iter().map(|(_, term)| term).collect();
         sums
     }
 
@@ -64,10 +66,10 @@ impl Sums {
             for term in &self.terms[first..*end as usize] {
                 let (start, seen) = (term.source as usize + batch.start, &seen[term.seen as usize]);
                 match values[start..].first_chunk::<BATCH>() {
-                    Some(values) if batch.len() == BATCH => {
-                        add_products::<FUSED>(values, seen, &mut sum)
-                    }
-                    _ => {
+                    // Beyond the last interval of a chain they belong to others, and nobody is
+                    // told of their sums.
+                    Some(values) => add_products::<FUSED>(values, seen, &mut sum),
+                    None => {
                         let mut last = NOTHING;
                         last[..batch.len()].copy_from_slice(&values[start..][..batch.len()]);
                         add_products::<FUSED>(&last, seen, &mut sum);

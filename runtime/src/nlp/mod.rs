@@ -228,8 +228,9 @@ pub struct Start {
 pub struct Warm {
     /// Its multipliers.
     pub multipliers: Multipliers,
-    /// The barrier parameter of the scaled NLP to begin with.
-    pub mu: f64,
+    /// The barrier parameter of the scaled NLP to begin with; nothing where it is to leave as much
+    /// room as the start violates rows, which is known when there is an NLP.
+    pub mu: Option<f64>,
     /// The width of each smoothed surface, where the model names none; else nothing.
     pub widths: Vec<f64>,
 }
@@ -242,8 +243,8 @@ impl Warm {
 impl Start {
     /// Where another solve of the same size ended.
     pub fn after(solution: &Solution) -> Self {
-        let warm =
-            Warm { multipliers: solution.multipliers.clone(), mu: solution.mu, widths: Vec::new() };
+        let (multipliers, mu) = (solution.multipliers.clone(), Some(solution.mu));
+        let warm = Warm { multipliers, mu, widths: Vec::new() };
         Start { v: solution.v.clone(), warm: Some(warm) }
     }
 
@@ -255,7 +256,7 @@ impl Start {
 
     /// The same with room for other conditions to become active.
     pub(crate) fn with_room(mut self) -> Self {
-        self.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(Warm::ROOM));
+        self.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.map(|mu| mu.max(Warm::ROOM)));
         self
     }
 }

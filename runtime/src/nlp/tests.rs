@@ -203,7 +203,7 @@ fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
     let mut dense = Dense::new(vec![at_least(2.0)], vec![], (values, slopes, curvature));
     let multipliers = Multipliers { lower: vec![2.0], ..Multipliers::zeros(&dense) };
     let start =
-        Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0, widths: Vec::new() }) };
+        Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: Some(0.0), widths: Vec::new() }) };
     let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic, is_final: true };
     let solution = attempt(&mut dense, &start, &options, &mut |_| ControlFlow::Continue(()));
     assert_eq!(solution.status, Status::Solved);

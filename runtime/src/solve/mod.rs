@@ -71,7 +71,9 @@ pub fn solve_chain(
     let mut nlp = ChainNlp::new(chain);
     let mut run = Run::new(chain);
     run.apply_sigma(&mut nlp);
-    let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
+    let mut start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
+    warm_start::make_room(&mut nlp, chain, &mut start);
+    run.apply_sigma(&mut nlp);
     let solver = chain.method().solver;
     let is_open = matches!(solver, Solver::Automatic | Solver::Convex);
     let is_convex = convex::is_quadratic_program(chain) && convex::is_proved(&mut nlp);

@@ -213,6 +213,11 @@ pub fn conditions(problem: &Problem) -> usize {
     problem.method.intervals().saturating_mul(in_each.saturating_add(problem.surfaces.len()))
 }
 
+/// The chain of the NLP of a problem, without transcribing it.
+pub(crate) fn chain_of(problem: &Problem) -> Stages {
+    stages(problem, &Interval::new(&problem.method, &problem.layout))
+}
+
 fn stages(problem: &Problem, interval: &Interval) -> Stages {
     Stages {
         intervals: problem.method.intervals(),

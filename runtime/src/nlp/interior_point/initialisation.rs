@@ -12,9 +12,11 @@ use crate::nlp::{Multipliers, Nlp, Options, Start};
 pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Algorithm {
     let formulation = Formulation::new(nlp);
     let (mu, push) = match &start.warm {
-        Some(warm) if warm.mu > 0.0 => (warm.mu, WARM_START_BOUND_PUSH),
-        // A method without a barrier has no parameter of it.
-        Some(_) => (options.tol, WARM_START_BOUND_PUSH),
+        Some(warm) => {
+            // A method without a barrier has no parameter of it.
+            let mu = warm.mu.filter(|mu| *mu > 0.0).unwrap_or(options.tol);
+            (mu, WARM_START_BOUND_PUSH)
+        }
         None => (FIRST_MU, BOUND_PUSH),
     };
     let y = first_point(nlp, &formulation, &start.v, push);

@@ -7,6 +7,7 @@ use super::{
 use crate::linalg::{Family, Stages, Triplets};
 use crate::problem::{Bounds, Linear};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 type Values = fn(&[f64], &mut [f64]) -> f64;
 type Slopes = fn(&[f64], &mut [f64], &mut [f64]);
@@ -60,10 +61,11 @@ impl Nlp for Dense {
     fn stages(&self) -> Option<Stages> {
         None
     }
-    fn quantities(&self) -> Quantities {
+    fn quantities(&self) -> Arc<Quantities> {
         let (variables, constraints) =
             ((0..self.variables.len()).collect(), (0..self.rows.len()).collect());
-        Quantities { units: vec![1.0; self.variables.len()], variables, constraints, stepped: 0 }
+        let units = vec![1.0; self.variables.len()];
+        Arc::new(Quantities { units, variables, constraints, stepped: 0 })
     }
     fn objective_size(&mut self, terms: f64) -> f64 {
         terms.max(super::NO_OBJECTIVE)

@@ -197,11 +197,11 @@ fn limiting(
     phases: &[Outcome],
     tol: f64,
 ) -> Option<Limiting> {
-    let violations = crate::nlp::violations(nlp, &solution.v);
-    let worst = largest(&violations, |_| true)?;
-    if solution.status.is_solved() || violations[worst] <= tol {
+    if solution.status.is_solved() {
         return None;
     }
+    let violations = crate::nlp::violations(nlp, &solution.v);
+    let worst = largest(&violations, |_| true).filter(|worst| violations[*worst] > tol)?;
     // A condition may be missed by as little as each step, and all steps together by far more.
     let step = largest(&violations, |row| nlp.is_defect(row));
     let place_of = |row| nlp.constraint_place(row);

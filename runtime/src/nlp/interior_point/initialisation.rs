@@ -49,13 +49,14 @@ fn first_point(nlp: &mut dyn Nlp, formulation: &Formulation, start: &[f64], push
             *value = bounds.lower;
         }
     }
-    let mut pushed = y.clone();
-    formulation.push_inside(&mut pushed, push);
-    let mut rows = vec![0.0; formulation.target.len()];
-    nlp.values(&pushed, &mut rows);
-    y.extend(
-        formulation.slacks.iter().map(|a| if rows[a.row].is_finite() { rows[a.row] } else { 0.0 }),
-    );
+    if !formulation.slacks.is_empty() {
+        let mut pushed = y.clone();
+        formulation.push_inside(&mut pushed, push);
+        let mut rows = vec![0.0; formulation.target.len()];
+        nlp.values(&pushed, &mut rows);
+        let finite = |row: f64| if row.is_finite() { row } else { 0.0 };
+        y.extend(formulation.slacks.iter().map(|it| finite(rows[it.row])));
+    }
     formulation.push_inside(&mut y, push);
     y
 }

@@ -137,13 +137,13 @@ fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let mut rows = vec![0.0; quantities.constraints.len()];
     nlp.values(v, &mut rows);
     let mut steepest = vec![(0, 0.0f64, 0); rows.len()];
-    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
+    nlp.jacobian_structure().with_values(&slopes.jacobian).for_each(|(row, column, slope)| {
         let (quantity, most, entries) = &mut steepest[row];
-        if *slope != 0.0 {
+        if slope != 0.0 {
             (*quantity, *most, *entries) =
                 (quantities.variables[column], slope.abs(), *entries + 1);
         }
-    }
+    });
     let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
     let conditions =
         nlp.constraint_bounds().iter().zip(&rows).zip(&quantities.constraints).zip(steepest);

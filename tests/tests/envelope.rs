@@ -2,7 +2,7 @@
 //! differences of solutions.
 
 use fdcc_compiler::compile_by_parameters;
-use fdcc_runtime::solution::{Hamiltonian, by_parameters};
+use fdcc_runtime::solution::{Trajectory, by_parameters};
 use fdcc_runtime::transcribe::TranscribedNlp;
 use fdcc_tests::models::changed;
 use fdcc_tests::{Solved, repository};
@@ -200,7 +200,8 @@ fn controls_minimise_the_hamiltonian_where_their_signs_agree() {
             let (mut nlp, mut solution) = (TranscribedNlp::new(&problem), outcome.solution.clone());
             let controls: Vec<usize> = (0..10).map(|k| nlp.chain().control(k).start).collect();
             controls.into_iter().for_each(|at| solution.v[at] *= factor);
-            let violations = Hamiltonian::new(&problem, &mut nlp, &solution, 2.0).violations;
+            let found = Trajectory::new(&problem, &mut nlp, &solution).hamiltonian;
+            let violations = found.violations;
             assert!((violations[0] - 0.25).abs() < 1e-12, "{text}: {violations:?}");
         }
     }

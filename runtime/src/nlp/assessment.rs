@@ -47,20 +47,19 @@ impl Assessment {
     pub(crate) fn new(nlp: &mut dyn Nlp, v: &[f64], multipliers: &Multipliers) -> Self {
         let quantities = nlp.quantities();
         let magnitudes = magnitudes(&quantities, v);
+        let sizes: Vec<f64> = quantities.variables.iter().map(|i| magnitudes[*i]).collect();
         let (mut rows, mut at) = (vec![0.0; nlp.constraint_bounds().len()], Derivatives::new(nlp));
         let objective = nlp.values(v, &mut rows);
         nlp.derivatives(v, 1.0, &vec![0.0; rows.len()], &mut at);
-        let terms = expansion(nlp, &quantities, &at, v, &magnitudes);
+        let terms = expansion(nlp, &at, v, &sizes);
         let size = nlp.objective_size(objective.abs().max(terms));
-        let of_rows = constraint_magnitudes(nlp, &quantities, v, &at.jacobian, &magnitudes);
-        let variables = nlp.variable_bounds().iter().zip(v);
-        let sides = variables
-            .zip(&quantities.variables)
-            .map(|((bounds, value), i)| (bounds, *value, magnitudes[*i]));
+        let of_rows =
+            constraint_magnitudes(nlp, &quantities, v, &at.jacobian, (&magnitudes, &sizes));
+        let sides = nlp.variable_bounds().iter().zip(v).zip(&sizes);
         let both = multipliers.lower.iter().zip(&multipliers.upper);
         let mut sums = Sums::default();
-        sides.zip(both).for_each(|((bounds, value, size), (lower, upper))| {
-            sums.add(bounds, value, size, [*lower, *upper]);
+        sides.zip(both).for_each(|(((bounds, value), size), (lower, upper))| {
+            sums.add(bounds, *value, *size, [*lower, *upper]);
         });
         let rows =
             nlp.constraint_bounds().iter().zip(&rows).zip(&of_rows).zip(&multipliers.constraints);
@@ -72,7 +71,7 @@ impl Assessment {
             }
         });
         let spread = spreads.into_iter().fold(0.0, f64::max);
-        let slope = slope(nlp, &quantities, &at, multipliers, &magnitudes);
+        let slope = slope(nlp, &at, multipliers, &sizes);
         // Without an objective there is nothing to gain.
         let relative =
             |value: f64| if objective == 0.0 && terms == 0.0 { 0.0 } else { value / size };
@@ -177,12 +176,12 @@ fn constraint_magnitudes(
     quantities: &Quantities,
     v: &[f64],
     jacobian: &[f64],
-    magnitudes: &[f64],
+    (magnitudes, sizes): (&[f64], &[f64]),
 ) -> Vec<f64> {
     let mut terms = vec![0.0; quantities.constraints.len()];
-    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(jacobian) {
-        terms[row] += slope.abs() * magnitudes[quantities.variables[column]];
-    }
+    nlp.jacobian_structure().with_values(jacobian).for_each(|(row, column, slope)| {
+        terms[row] += slope.abs() * sizes[column];
+    });
     let kinds = quantities.constraints.iter().max().map_or(0, |last| last + 1);
     let mut largest = vec![0.0f64; kinds];
     for ((i, terms), bounds) in
@@ -201,31 +200,19 @@ fn constraint_magnitudes(
 
 /// The terms of the objective to second order around the point: near a minimum its gradient says
 /// little of them.
-fn expansion(
-    nlp: &dyn Nlp,
-    quantities: &Quantities,
-    at: &Derivatives,
-    v: &[f64],
-    magnitudes: &[f64],
-) -> f64 {
-    let size = |j: usize| v[j].abs() + PART * magnitudes[quantities.variables[j]];
-    let first: f64 = at.gradient.iter().enumerate().map(|(j, slope)| slope.abs() * size(j)).sum();
-    let second = nlp.hessian_structure().entries().zip(&at.hessian).map(|((i, j), curvature)| {
+fn expansion(nlp: &dyn Nlp, at: &Derivatives, v: &[f64], sizes: &[f64]) -> f64 {
+    let reach: Vec<f64> = v.iter().zip(sizes).map(|(v, size)| v.abs() + PART * size).collect();
+    let first: f64 = at.gradient.iter().zip(&reach).map(|(slope, by)| slope.abs() * by).sum();
+    let second = nlp.hessian_structure().with_values(&at.hessian).map(|(i, j, curvature)| {
         let factor = if i == j { 0.5 } else { 1.0 };
-        factor * curvature.abs() * size(i) * size(j)
+        factor * curvature.abs() * reach[i] * reach[j]
     });
     first + second.sum::<f64>()
 }
 
 /// What a step that moves every free variable by its size could gain by the gradient of the
 /// Lagrangian.
-fn slope(
-    nlp: &dyn Nlp,
-    quantities: &Quantities,
-    at: &Derivatives,
-    multipliers: &Multipliers,
-    magnitudes: &[f64],
-) -> f64 {
+fn slope(nlp: &dyn Nlp, at: &Derivatives, multipliers: &Multipliers, sizes: &[f64]) -> f64 {
     let mut gradient = at.gradient.clone();
     nlp.jacobian_structure().transposed_multiply_add(
         &at.jacobian,
@@ -233,10 +220,10 @@ fn slope(
         &mut gradient,
     );
     let sides = multipliers.lower.iter().zip(&multipliers.upper);
-    let of_variables = nlp.variable_bounds().iter().zip(&quantities.variables);
+    let of_variables = nlp.variable_bounds().iter().zip(sizes);
     let parts = gradient.iter().zip(sides).zip(of_variables).map(
-        |((slope, (lower, upper)), (bounds, i))| {
-            if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * magnitudes[*i] }
+        |((slope, (lower, upper)), (bounds, size))| {
+            if bounds.is_equality() { 0.0 } else { (slope - lower + upper).abs() * size }
         },
     );
     parts.sum()

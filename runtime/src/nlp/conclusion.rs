@@ -2,7 +2,7 @@
 //! program as it was written.
 
 use super::assessment::Assessment;
-use super::{Counts, Multipliers, Nlp, Options, Solution, Status, constraint_violation};
+use super::{Counts, Multipliers, Nlp, Options, Solution, Status, objective_and_violation};
 
 /// Where a solver came to its end, in the units of the program, and what it says of that itself.
 pub(super) struct Ended {
@@ -17,6 +17,8 @@ pub(super) struct Ended {
     pub(super) is_saddle: bool,
     /// See [`Solution::descent`].
     pub(super) descent: Option<Vec<f64>>,
+    /// The measures of the program there, where they are known.
+    pub(super) assessed: Option<Assessment>,
     /// The Newton decrement, in units of the objective; infinite where it is not known.
     pub(super) decrement: f64,
     pub(super) counts: Counts,
@@ -25,21 +27,21 @@ pub(super) struct Ended {
 /// The solution with the status that it deserves. A solve on the way to another has the status that
 /// the solver gives.
 pub(super) fn conclude(nlp: &mut dyn Nlp, ended: Ended, options: &Options) -> Solution {
-    let Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts } =
-        ended;
-    let (mut status, mut improvement) = (status, f64::INFINITY);
+    let Ended { mut status, v, multipliers, mu, kkt_error, is_saddle, descent, .. } = ended;
+    let (decrement, counts) = (ended.decrement, ended.counts);
+    let mut improvement = f64::INFINITY;
     if options.is_final {
-        let assessment = Assessment::new(nlp, &v, &multipliers).with_decrement(decrement);
+        let assessment = ended.assessed.unwrap_or_else(|| Assessment::new(nlp, &v, &multipliers));
+        let assessment = assessment.with_decrement(decrement);
         improvement = assessment.improvement();
         status = judged(status, &assessment, is_saddle, options.tol);
     }
-    let objective = nlp.values(&v, &mut vec![0.0; multipliers.constraints.len()]);
+    let (objective, constraint_violation) = objective_and_violation(nlp, &v);
     let status = if status.is_solved() && !objective.is_finite() {
         Status::NotFinite(nlp.not_finite(&v).unwrap_or_default())
     } else {
         status
     };
-    let constraint_violation = constraint_violation(nlp, &v);
     let global = false;
     Solution {
         status,

@@ -16,10 +16,14 @@ pub(super) fn curvatures(
     (first, kinds): (usize, usize),
 ) -> Vec<f64> {
     let phases = nlp.phases();
+    let groups = groups(nlp, quantities, &phases, first);
+    let mut curvatures = vec![0.0; kinds];
+    if groups.is_empty() {
+        return curvatures;
+    }
     let (mut counts, mut at) = (vec![0.0; kinds], Derivatives::new(nlp));
     quantities.constraints.iter().for_each(|kind| counts[*kind] += 1.0);
-    let mut curvatures = vec![0.0; kinds];
-    for group in groups(nlp, quantities, &phases, first) {
+    for group in groups {
         let is_its = |kind: &usize| group.iter().any(|it| it.kind == *kind);
         let weight = |kind: &usize| f64::from(u8::from(is_its(kind)));
         let weights: Vec<f64> = quantities.constraints.iter().map(weight).collect();

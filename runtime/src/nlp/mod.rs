@@ -28,6 +28,7 @@ use crate::problem::{Bounds, Linear, Origin};
 pub use covariance::Covariance;
 pub(crate) use scaling::objective_unit;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 pub(crate) use tuning::assessment::NO_OBJECTIVE;
 
 /// First and second derivatives at a point, in the order of the structures of the NLP.
@@ -96,7 +97,7 @@ pub trait Nlp {
         Vec::new()
     }
     /// Which variables and constraints are one quantity of the model.
-    fn quantities(&self) -> Quantities;
+    fn quantities(&self) -> Arc<Quantities>;
     /// The size of an objective whose terms are this large: at least a small part of its unit.
     fn objective_size(&mut self, terms: f64) -> f64;
     /// How much the objective changes at the guess with the sizes of the variables, where that is
@@ -229,8 +230,9 @@ pub struct Start {
 pub struct Warm {
     /// Its multipliers.
     pub multipliers: Multipliers,
-    /// The barrier parameter of the scaled NLP to begin with.
-    pub mu: f64,
+    /// The barrier parameter of the scaled NLP to begin with; nothing where it is to leave as much
+    /// room as the start violates rows, which is known when there is an NLP.
+    pub mu: Option<f64>,
     /// The width of each smoothed surface, where the model names none; else nothing.
     pub widths: Vec<f64>,
 }
@@ -243,8 +245,8 @@ impl Warm {
 impl Start {
     /// Where another solve of the same size ended.
     pub fn after(solution: &Solution) -> Self {
-        let warm =
-            Warm { multipliers: solution.multipliers.clone(), mu: solution.mu, widths: Vec::new() };
+        let (multipliers, mu) = (solution.multipliers.clone(), Some(solution.mu));
+        let warm = Warm { multipliers, mu, widths: Vec::new() };
         Start { v: solution.v.clone(), warm: Some(warm) }
     }
 
@@ -256,7 +258,7 @@ impl Start {
 
     /// The same with room for other conditions to become active.
     pub(crate) fn with_room(mut self) -> Self {
-        self.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.max(Warm::ROOM));
+        self.warm.iter_mut().for_each(|warm| warm.mu = warm.mu.map(|mu| mu.max(Warm::ROOM)));
         self
     }
 }
@@ -358,14 +360,6 @@ impl Solution {
     }
 }
 
-/// The constraint that is violated most, and by how much.
-pub fn worst_constraint(nlp: &mut dyn Nlp, v: &[f64]) -> Option<(usize, f64)> {
-    violations(nlp, v).into_iter().enumerate().fold(None, |worst, (row, violation)| match worst {
-        Some((_, largest)) if largest >= violation => worst,
-        _ => Some((row, violation)),
-    })
-}
-
 /// By how much each constraint is violated at `v`.
 pub fn violations(nlp: &mut dyn Nlp, v: &[f64]) -> Vec<f64> {
     let mut rows = vec![0.0; nlp.constraint_bounds().len()];
@@ -376,8 +370,15 @@ pub fn violations(nlp: &mut dyn Nlp, v: &[f64]) -> Vec<f64> {
 
 /// Largest violation of constraints and bounds at `v`.
 pub fn constraint_violation(nlp: &mut dyn Nlp, v: &[f64]) -> f64 {
-    let rows = worst_constraint(nlp, v).map_or(0.0, |(_, violation)| violation);
-    let bounds =
-        nlp.variable_bounds().iter().zip(v).map(|(bounds, value)| bounds.violation(*value));
-    bounds.fold(rows, f64::max)
+    objective_and_violation(nlp, v).1
+}
+
+/// The objective at `v`, and the largest violation of constraints and bounds there.
+fn objective_and_violation(nlp: &mut dyn Nlp, v: &[f64]) -> (f64, f64) {
+    let mut rows = vec![0.0; nlp.constraint_bounds().len()];
+    let objective = nlp.values(v, &mut rows);
+    let each = |bounds: &[Bounds], values: &[f64]| {
+        bounds.iter().zip(values).map(|(it, value)| it.violation(*value)).fold(0.0, f64::max)
+    };
+    (objective, each(nlp.constraint_bounds(), &rows).max(each(nlp.variable_bounds(), v)))
 }

@@ -7,6 +7,7 @@ use super::{
 use crate::linalg::{Family, Stages, Triplets};
 use crate::problem::{Bounds, Linear};
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 type Values = fn(&[f64], &mut [f64]) -> f64;
 type Slopes = fn(&[f64], &mut [f64], &mut [f64]);
@@ -60,10 +61,11 @@ impl Nlp for Dense {
     fn stages(&self) -> Option<Stages> {
         None
     }
-    fn quantities(&self) -> Quantities {
+    fn quantities(&self) -> Arc<Quantities> {
         let (variables, constraints) =
             ((0..self.variables.len()).collect(), (0..self.rows.len()).collect());
-        Quantities { units: vec![1.0; self.variables.len()], variables, constraints, stepped: 0 }
+        let units = vec![1.0; self.variables.len()];
+        Arc::new(Quantities { units, variables, constraints, stepped: 0 })
     }
     fn objective_size(&mut self, terms: f64) -> f64 {
         terms.max(super::NO_OBJECTIVE)
@@ -203,7 +205,7 @@ fn a_start_without_a_barrier_parameter_is_one_all_the_same() {
     let mut dense = Dense::new(vec![at_least(2.0)], vec![], (values, slopes, curvature));
     let multipliers = Multipliers { lower: vec![2.0], ..Multipliers::zeros(&dense) };
     let start =
-        Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: 0.0, widths: Vec::new() }) };
+        Start { v: vec![2.0], warm: Some(Warm { multipliers, mu: Some(0.0), widths: Vec::new() }) };
     let options = Options { tol: 1e-9, max_iter: 300, linear: Linear::Automatic, is_final: true };
     let solution = attempt(&mut dense, &start, &options, &mut |_| ControlFlow::Continue(()));
     assert_eq!(solution.status, Status::Solved);

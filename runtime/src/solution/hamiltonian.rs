@@ -13,7 +13,7 @@
 use super::elsewhere::Elsewhere;
 use super::lagrangian::{Lagrangian, add_slopes};
 use super::minimum;
-use crate::nlp::{Nlp, Solution};
+use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Problem};
 use crate::transcribe::TranscribedNlp;
 
@@ -21,6 +21,8 @@ use crate::transcribe::TranscribedNlp;
 const NOISE: f64 = 100.0;
 /// Terms that are less than this part of noise are those of an objective that is 0.
 const NOTHING: f64 = 1e-8;
+/// Terms are far larger than noise that is no more than this part of them.
+const CLEAR: f64 = 1e-2;
 /// An unknown with a larger multiplier is at its bound.
 const AT_BOUND: f64 = 1e-4;
 
@@ -49,27 +51,31 @@ pub struct Hamiltonian {
     /// Whether all its terms together are no more than the tolerance of the solver: then nothing
     /// can be said of it.
     pub is_noise: bool,
-    /// Terms that are not larger than this are none.
+    /// Terms that are not larger than this are none; where all are far larger, it is the most that
+    /// noise can be.
     pub noise: f64,
 }
 
 impl Hamiltonian {
-    /// Of a solution over this time.
-    pub fn new(
+    /// Of a solution, with the derivatives there, over this time.
+    pub(crate) fn new(
         problem: &Problem,
         nlp: &mut TranscribedNlp,
-        solution: &Solution,
+        (solution, derivatives): (&Solution, &Derivatives),
         duration: f64,
     ) -> Self {
         let lagrangian = Lagrangian::new(problem, nlp, solution);
         let ((values, size), expected) = (lagrangian.hamiltonian(duration), lagrangian.expected());
-        let noise = noise(problem, nlp, duration);
+        let noise = noise(problem, nlp, (duration, size));
         let is_noise = size <= noise;
         let scale = if size > NOTHING * noise { size } else { noise };
         let size = size.max(noise);
         let violations = match is_noise {
             true => vec![0.0; problem.layout.u],
-            false => minimum::violations(&problem.controls, nlp, solution, (duration, size)),
+            false => {
+                let slopes = minimum::gradient(nlp, solution, derivatives);
+                minimum::violations(nlp, (&solution.v, &slopes), (duration, size))
+            }
         };
         // At the time of a row of measured data costates jump.
         let is_constant = problem.is_autonomous && problem.measurements.is_empty();
@@ -114,9 +120,12 @@ impl Hamiltonian {
 }
 
 /// Terms that are not larger than this are none, over this time: the tolerance in units of the
-/// objective, which are small where all numbers of a model are.
-fn noise(problem: &Problem, nlp: &mut TranscribedNlp, duration: f64) -> f64 {
-    NOISE * problem.method.tol * nlp.objective_unit() / duration.abs()
+/// objective, which are small where all numbers of a model are. They are at most 1, and take time
+/// to find out: they are asked for where terms of this size leave it open what is noise.
+fn noise(problem: &Problem, nlp: &mut TranscribedNlp, (duration, size): (f64, f64)) -> f64 {
+    let most = NOISE * problem.method.tol / duration.abs();
+    let is_clear = most <= CLEAR * size;
+    if is_clear { most } else { NOISE * problem.method.tol * nlp.objective_unit() / duration.abs() }
 }
 
 impl Lagrangian<'_> {

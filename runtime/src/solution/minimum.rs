@@ -19,26 +19,25 @@
 
 use super::outcome::Outcome;
 use crate::nlp::{Derivatives, Multipliers, Nlp, Solution};
-use crate::problem::{Bounds, Problem, Variable};
+use crate::problem::{Bounds, Problem};
 use crate::transcribe::TranscribedNlp;
 use crate::transcribe::interval::Signal;
 
 /// A smaller part of the size of the Hamiltonian is no gain.
 const GAIN: f64 = 1e-3;
 
-/// For each of these controls, the part of the time on which the rule of signs is violated, over
-/// this time and with terms of this size.
-pub(crate) fn violations(
-    controls: &[Variable],
-    nlp: &mut TranscribedNlp,
-    solution: &Solution,
+/// For each control, the part of the time on which the rule of signs is violated at a point with
+/// these slopes, over this time and with terms of this size.
+pub(super) fn violations(
+    nlp: &TranscribedNlp,
+    (v, slopes): (&[f64], &[f64]),
     (duration, size): (f64, f64),
 ) -> Vec<f64> {
-    let slopes = slopes(nlp, solution);
-    let gains = controls.iter().enumerate().map(|(control, it)| {
-        let largest = largest(nlp, &solution.v, control, it.unit);
-        gains(nlp, (&solution.v, &slopes), control, largest)
-    });
+    let controls = &nlp.problem().controls;
+    let gains = controls
+        .iter()
+        .enumerate()
+        .map(|(control, it)| gains(nlp, (v, slopes), control, largest(nlp, v, control, it.unit)));
     let part = |k: usize| nlp.mesh().relative(k) / nlp.chain().intervals as f64;
     let is_large = |k: usize, gain: f64| gain > GAIN * size * duration.abs() * part(k);
     let violated = |gains: Vec<f64>| {
@@ -87,10 +86,8 @@ pub fn control_slopes(problem: &Problem, outcome: &Outcome) -> Vec<ControlSlopes
 
 /// Of each slope, what its terms add up to without their signs.
 fn sizes_of_slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
-    let mut derivatives = Derivatives::new(nlp);
     let rows = &solution.multipliers.constraints;
-    nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
-    let Derivatives { gradient, jacobian, .. } = derivatives;
+    let Derivatives { gradient, jacobian, .. } = derivatives(nlp, solution);
     let mut sizes: Vec<f64> = gradient.iter().map(|it| it.abs()).collect();
     let jacobian: Vec<f64> = jacobian.iter().map(|it| it.abs()).collect();
     let rows: Vec<f64> = rows.iter().map(|it| it.abs()).collect();
@@ -100,12 +97,26 @@ fn sizes_of_slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
 
 /// The gradient of the Lagrangian without the multipliers of bounds.
 pub(crate) fn slopes(nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<f64> {
-    let rows = &solution.multipliers.constraints;
+    let derivatives = derivatives(nlp, solution);
+    gradient(nlp, solution, &derivatives)
+}
+
+/// The same from the derivatives at the solution.
+pub(super) fn gradient(
+    nlp: &TranscribedNlp,
+    solution: &Solution,
+    Derivatives { gradient, jacobian, .. }: &Derivatives,
+) -> Vec<f64> {
+    let (mut slopes, rows) = (gradient.clone(), &solution.multipliers.constraints);
+    nlp.jacobian_structure().transposed_multiply_add(jacobian, rows, &mut slopes);
+    slopes
+}
+
+/// The derivatives at a solution.
+pub(super) fn derivatives(nlp: &mut TranscribedNlp, solution: &Solution) -> Derivatives {
     let mut derivatives = Derivatives::new(nlp);
-    nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
-    let Derivatives { mut gradient, jacobian, .. } = derivatives;
-    nlp.jacobian_structure().transposed_multiply_add(&jacobian, rows, &mut gradient);
-    gradient
+    nlp.derivatives(&solution.v, 1.0, &solution.multipliers.constraints, &mut derivatives);
+    derivatives
 }
 
 /// Gives a control whose bounds are equal the multiplier that its value has: the slope. The

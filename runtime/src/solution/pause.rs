@@ -78,13 +78,16 @@ impl<'a> Passage<'a> {
     /// The Hamiltonian of resting with this part of the control, if that is possible.
     fn rest(&self, part: f64) -> Option<f64> {
         let points = self.points(part);
-        let (psi, rates) = (self.psi(&points), self.rates(&points));
+        let psi = self.psi(&points);
         // Of a `Dir` it is a length, which is never below 0.
         let is_layer = psi[0] < -0.5 * self.sigma && psi[SAMPLES - 1] > 0.5 * self.sigma;
-        let place = (1..SAMPLES)
-            .find(|at| rates[at - 1] > 0.0 && rates[*at] <= 0.0)
-            .filter(|_| is_layer)?;
-        let values = self.hamiltonian(&points);
+        if !is_layer {
+            return None;
+        }
+        let flow = self.flow(&points);
+        let rates = self.rates(&points, &psi, &flow);
+        let place = (1..SAMPLES).find(|at| rates[at - 1] > 0.0 && rates[*at] <= 0.0)?;
+        let values = self.hamiltonian(&flow);
         let weight = rates[place - 1] / (rates[place - 1] - rates[place]);
         let value = values[place - 1] + weight * (values[place] - values[place - 1]);
         // Terms that are larger than those of the whole solution are noise of its costates, not of
@@ -122,25 +125,24 @@ impl<'a> Passage<'a> {
     }
 
     /// Of the switching function, over the whole time.
-    fn rates(&self, points: &Columns) -> Vec<f64> {
+    fn rates(&self, points: &Columns, psi: &[f64], flow: &[Vec<f64>]) -> Vec<f64> {
         let mut moved = points.clone();
-        for (i, rates) in self.flow(points).iter().take(self.problem.layout.x).enumerate() {
+        for (i, rates) in flow.iter().take(self.problem.layout.x).enumerate() {
             moved.column_mut(1 + i).iter_mut().zip(rates).for_each(|(x, rate)| *x += STEP * rate);
         }
-        let both = self.psi(&moved).into_iter().zip(self.psi(points));
+        let both = self.psi(&moved).into_iter().zip(psi);
         both.map(|(moved, still)| (moved - still) / STEP).collect()
     }
 
     /// With the costate of the end that is farther from the surface.
-    fn hamiltonian(&self, points: &Columns) -> Vec<f64> {
+    fn hamiltonian(&self, flow: &[Vec<f64>]) -> Vec<f64> {
         let (problem, trajectory) = (self.problem, self.trajectory);
         let far = self.interval + usize::from(self.psi[1].abs() > self.psi[0].abs());
         let duration = trajectory.time[trajectory.time.len() - 1] - trajectory.time[0];
         let costates = trajectory.costates.iter().map(|costate| problem.sense * costate[far]);
         let weights: Vec<f64> = costates.chain(problem.running_cost.then_some(1.0)).collect();
-        let flow = self.flow(points);
         let terms = |at: usize| {
-            weights.iter().zip(&flow).map(|(weight, output)| weight * output[at]).sum::<f64>()
+            weights.iter().zip(flow).map(|(weight, output)| weight * output[at]).sum::<f64>()
         };
         (0..SAMPLES).map(|at| terms(at) / duration).collect()
     }

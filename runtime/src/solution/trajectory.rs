@@ -2,6 +2,7 @@
 
 use super::hamiltonian::Hamiltonian;
 use super::lagrangian::{end_multipliers, path_multipliers};
+use super::minimum::derivatives;
 use crate::linalg::Stages;
 use crate::nlp::{Derivatives, Nlp, Solution};
 use crate::problem::{Columns, Function, Problem};
@@ -56,16 +57,18 @@ impl Trajectory {
         let parameters = nlp.parameters_at(v);
         let points = points(nlp, problem, v);
         let time = times(problem, &parameters);
+        let duration = time[time.len() - 1] - time[0];
+        let derivatives = derivatives(nlp, solution);
         Trajectory {
             states: (0..problem.layout.x).map(|i| points.column(1 + i).to_vec()).collect(),
             controls: controls(nlp, v),
             nodes: nodes(nlp, v, &time),
             report: sample(&*problem.report, &points, &parameters),
             switching: sample(&*problem.switching, &points, &parameters),
-            costates: costates(problem, nlp, solution),
+            costates: costates(problem, nlp, solution, &derivatives),
             path_multipliers: path_multipliers(problem, nlp, solution, &time),
             end_multipliers: end_multipliers(problem, nlp, solution),
-            hamiltonian: Hamiltonian::new(problem, nlp, solution, time[time.len() - 1] - time[0]),
+            hamiltonian: Hamiltonian::new(problem, nlp, (solution, &derivatives), duration),
             time,
             parameters,
         }
@@ -233,11 +236,15 @@ fn resized(points: &Columns, columns: usize) -> Columns {
 
 /// `dJ/dx_k`: the gradient by `x_k` of the Lagrangian of all that comes after grid point `k`. That
 /// is the part of interval `k` for `k < N`, and the part of the boundary for `k = N`.
-fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) -> Vec<Vec<f64>> {
+/// The derivatives are those at the solution, evaluated last.
+fn costates(
+    problem: &Problem,
+    nlp: &TranscribedNlp,
+    solution: &Solution,
+    derivatives: &Derivatives,
+) -> Vec<Vec<f64>> {
     let stages = nlp.chain();
     let rows = &solution.multipliers.constraints;
-    let mut derivatives = Derivatives::new(nlp);
-    nlp.derivatives(&solution.v, 1.0, rows, &mut derivatives);
     let own = nlp.gradient_from_here_on();
     let states = problem.layout.x;
     let mut costates = vec![vec![0.0; stages.intervals + 1]; states];
@@ -249,20 +256,19 @@ fn costates(problem: &Problem, nlp: &mut TranscribedNlp, solution: &Solution) ->
             costates[i][k] = own[variable];
         }
     }
-    for ((row, variable), value) in nlp.jacobian_structure().entries().zip(&derivatives.jacobian) {
-        let (k, i) = (variable / stages.variable_step(), variable % stages.variable_step());
-        if variable >= stages.globals().start || i >= states {
-            continue;
-        }
-        let from_here_on = if row >= stages.coupling().start {
-            k == stages.intervals
-        } else {
-            row / stages.row_step() == k
-        };
-        if from_here_on {
-            costates[i][k] += value * rows[row];
-        }
-    }
+    nlp.jacobian_structure().with_values(&derivatives.jacobian).for_each(
+        |(row, variable, value)| {
+            let (k, i) = (variable / stages.variable_step(), variable % stages.variable_step());
+            let is_state = variable < stages.globals().start && i < states;
+            let is_from_here_on = || match row >= stages.coupling().start {
+                true => k == stages.intervals,
+                false => row / stages.row_step() == k,
+            };
+            if is_state && is_from_here_on() {
+                costates[i][k] += value * rows[row];
+            }
+        },
+    );
     for value in costates.iter_mut().flatten() {
         *value *= problem.sense;
     }

@@ -73,7 +73,9 @@ pub fn solve_chain(
     let mut nlp = ChainNlp::new(chain);
     let mut run = Run::new(chain);
     run.apply_sigma(&mut nlp);
-    let start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
+    let mut start = start.unwrap_or_else(|| Start { v: nlp.guess(), warm: None });
+    warm_start::make_room(&mut nlp, chain, &mut start);
+    run.apply_sigma(&mut nlp);
     let solver = chain.method().solver;
     let is_open = matches!(solver, Solver::Automatic | Solver::Convex);
     let is_convex = convex::is_quadratic_program(chain) && convex::is_proved(&mut nlp);
@@ -197,11 +199,11 @@ fn limiting(
     phases: &[Outcome],
     tol: f64,
 ) -> Option<Limiting> {
-    let violations = crate::nlp::violations(nlp, &solution.v);
-    let worst = largest(&violations, |_| true)?;
-    if solution.status.is_solved() || violations[worst] <= tol {
+    if solution.status.is_solved() {
         return None;
     }
+    let violations = crate::nlp::violations(nlp, &solution.v);
+    let worst = largest(&violations, |_| true).filter(|worst| violations[*worst] > tol)?;
     // A condition may be missed by as little as each step, and all steps together by far more.
     let step = largest(&violations, |row| nlp.is_defect(row));
     let place_of = |row| nlp.constraint_place(row);

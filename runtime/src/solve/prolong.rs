@@ -54,7 +54,7 @@ pub(crate) fn prolong(times: &Times, from: Stages, start: &Start, to: Stages) ->
                 lower: variables(times, from, lower, to, shrink),
                 upper: variables(times, from, upper, to, shrink),
             };
-            Warm { multipliers, mu: shrink * mu, widths: widths.clone() }
+            Warm { multipliers, mu: mu.map(|mu| shrink * mu), widths: widths.clone() }
         },
     );
     Start { v: variables(times, from, &start.v, to, 1.0), warm }
@@ -154,7 +154,7 @@ mod tests {
         rows.push(8.0);
         let bounds = vec![6.0; chain.variables()];
         let multipliers = Multipliers { constraints: rows, lower: bounds.clone(), upper: bounds };
-        Start { v, warm: Some(Warm { multipliers, mu: 1e-3, widths: Vec::new() }) }
+        Start { v, warm: Some(Warm { multipliers, mu: Some(1e-3), widths: Vec::new() }) }
     }
 
     fn difference(a: &[f64], b: &[f64]) -> f64 {
@@ -184,7 +184,7 @@ mod tests {
     fn multipliers_of_pieces_of_time_and_the_barrier_parameter_fall_with_the_step() {
         let (from, to) = (chain(10), chain(40));
         let warm = prolong(&times(), from, &start(from), to).warm.expect("the start is warm");
-        assert_eq!(warm.mu, 1e-3 / 4.0);
+        assert_eq!(warm.mu, Some(1e-3 / 4.0));
         let mut rows = [2.0, 2.0, 1.0].repeat(40);
         rows.push(8.0);
         assert_eq!(warm.multipliers.constraints, rows);

@@ -9,9 +9,9 @@ use super::tuning::warm_start::{FACTOR, LEAST};
 use crate::linalg::Stages;
 use crate::nlp::{Solution, Start, Warm, constraint_violation, multiplier_estimate};
 use crate::problem::{Chain, Problem};
-use crate::transcribe::TranscribedNlp;
 use crate::transcribe::chain::ChainNlp;
 use crate::transcribe::interval::Signal;
+use crate::transcribe::{TranscribedNlp, chain_of};
 use pieces::Curves;
 
 /// Signals of an earlier solution over normalised time; `None` where it has none of that name.
@@ -112,9 +112,11 @@ pub fn from_earlier(chain: &Chain, earlier: &[Earlier]) -> Start {
     let v = resample(chain, earlier);
     let widths = earlier.iter().flat_map(|it| it.widths.iter().copied());
     let widths: Vec<f64> = widths.collect::<Option<_>>().unwrap_or_default();
-    let warm = first_width(chain, &widths).and_then(|(mut nlp, widths)| {
+    let warm = first_widths(chain, &widths).and_then(|(first, widths)| {
+        let mut nlp = ChainNlp::new(chain);
+        nlp.set_widths(&first);
         let multipliers = multiplier_estimate::multipliers(&mut nlp, &v)?;
-        Some(Warm { multipliers, mu: room(&mut nlp, &v), widths })
+        Some(Warm { multipliers, mu: Some(room(&mut nlp, &v)), widths })
     });
     Start { v, warm }
 }
@@ -122,14 +124,14 @@ pub fn from_earlier(chain: &Chain, earlier: &[Earlier]) -> Start {
 /// A solution on the same grids, found with these widths, of a chain with other parameters or
 /// another width.
 pub fn again(chain: &Chain, solution: &Solution, widths: &[f64]) -> Start {
-    with_room(chain, Start::near(solution), widths)
+    with_widths(chain, Start::near(solution), widths)
 }
 
 /// The same one interval later: each interval begins where the next one was, the last one stays as
 /// it is. For a chain of one phase on a uniform grid.
 pub fn one_interval_later(chain: &Chain, solution: &Solution, widths: &[f64]) -> Start {
     let mut start = Start::near(solution);
-    let stages = TranscribedNlp::new(&chain.phases[0]).chain();
+    let stages = chain_of(&chain.phases[0]);
     let Some(Warm { multipliers, .. }) = &mut start.warm else { return start };
     let (step, end) = (stages.variable_step(), stages.intervals * stages.variable_step());
     for variables in [&mut start.v, &mut multipliers.lower, &mut multipliers.upper] {
@@ -137,19 +139,28 @@ pub fn one_interval_later(chain: &Chain, solution: &Solution, widths: &[f64]) ->
     }
     let step = stages.row_step();
     multipliers.constraints.copy_within(step..stages.intervals * step, 0);
-    with_room(chain, start, widths)
+    with_widths(chain, start, widths)
 }
 
-fn with_room(chain: &Chain, mut start: Start, widths: &[f64]) -> Start {
-    if let (Some(warm), Some((mut nlp, widths))) = (&mut start.warm, first_width(chain, widths)) {
-        (warm.mu, warm.widths) = (room(&mut nlp, &start.v), widths);
+fn with_widths(chain: &Chain, mut start: Start, widths: &[f64]) -> Start {
+    if let (Some(warm), Some((_, widths))) = (&mut start.warm, first_widths(chain, widths)) {
+        (warm.mu, warm.widths) = (None, widths);
     }
     start
 }
 
-/// The NLP with the width that is solved first, and with it the earlier widths where these
-/// are taken, because the model names none; `None` if there are none either.
-fn first_width<'c>(chain: &'c Chain, earlier: &[f64]) -> Option<(ChainNlp<'c>, Vec<f64>)> {
+/// Gives a start without a barrier parameter the one that leaves the room that it needs with the
+/// widths that are solved first.
+pub(super) fn make_room(nlp: &mut ChainNlp, chain: &Chain, start: &mut Start) {
+    let Some(warm) = start.warm.as_mut().filter(|warm| warm.mu.is_none()) else { return };
+    let first = first_widths(chain, &warm.widths);
+    first.into_iter().for_each(|(widths, _)| nlp.set_widths(&widths));
+    warm.mu = Some(room(nlp, &start.v));
+}
+
+/// The widths that are solved first, and with them the earlier ones where these are taken, because
+/// the model names none; `None` if there are none either.
+fn first_widths(chain: &Chain, earlier: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
     let method = chain.method();
     let named = method.continuation.first().copied().or(method.sigma);
     let taken = if named.is_none() { earlier } else { &[] };
@@ -158,9 +169,7 @@ fn first_width<'c>(chain: &'c Chain, earlier: &[f64]) -> Option<(ChainNlp<'c>, V
         return None;
     }
     let widths = (0..count).map(|at| named.unwrap_or_else(|| taken[at]));
-    let mut nlp = ChainNlp::new(chain);
-    nlp.set_widths(&widths.collect::<Vec<_>>());
-    Some((nlp, taken.to_vec()))
+    Some((widths.collect(), taken.to_vec()))
 }
 
 /// The barrier parameter for a start that violates rows by `r`. Distances from bounds and their

@@ -25,6 +25,7 @@ pub(crate) mod tableau;
 mod tables;
 
 use crate::linalg::{Stages, Triplets};
+use crate::nlp::Quantities;
 use crate::problem::{Bounds, Columns, Measurements, Origin, Problem};
 use assembly::{Builder, Repeated};
 use boundary::Ends;
@@ -32,6 +33,8 @@ use interval::{Interval, Node, Point};
 use measured::Measured;
 use mesh::Mesh;
 use sampled::{Matrices, Sampled, Target};
+use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// The NLP of a problem on a grid.
 pub struct TranscribedNlp<'p> {
@@ -39,6 +42,8 @@ pub struct TranscribedNlp<'p> {
     /// See [`Nlp::objective_unit`](crate::nlp::Nlp::objective_unit); nothing as long as nobody
     /// asks.
     objective_unit: Option<f64>,
+    /// The same of [`Nlp::quantities`](crate::nlp::Nlp::quantities).
+    quantities: OnceCell<Arc<Quantities>>,
     stages: Stages,
     interval: Interval,
     mesh: Mesh,
@@ -79,6 +84,7 @@ impl<'p> TranscribedNlp<'p> {
         TranscribedNlp {
             problem,
             objective_unit: None,
+            quantities: OnceCell::new(),
             stages,
             variable_bounds: bounds::of_variables(problem, stages, &interval),
             constraint_bounds: bounds::of_rows(problem, stages),
@@ -211,6 +217,11 @@ pub fn conditions(problem: &Problem) -> usize {
     let interval = Interval::new(&problem.method, &problem.layout);
     let in_each = problem.path_bounds.len().saturating_mul(interval.path.len());
     problem.method.intervals().saturating_mul(in_each.saturating_add(problem.surfaces.len()))
+}
+
+/// The chain of the NLP of a problem, without transcribing it.
+pub(crate) fn chain_of(problem: &Problem) -> Stages {
+    stages(problem, &Interval::new(&problem.method, &problem.layout))
 }
 
 fn stages(problem: &Problem, interval: &Interval) -> Stages {

@@ -4,6 +4,7 @@ use super::TranscribedNlp;
 use crate::linalg::{Stages, Triplets};
 use crate::nlp::{Derivatives, NO_OBJECTIVE, Nlp, Place, Quantities, objective_unit};
 use crate::problem::{Bounds, Degree};
+use std::sync::Arc;
 
 impl Nlp for TranscribedNlp<'_> {
     fn variable_bounds(&self) -> &[Bounds] {
@@ -21,8 +22,8 @@ impl Nlp for TranscribedNlp<'_> {
     fn stages(&self) -> Option<Stages> {
         Some(self.stages)
     }
-    fn quantities(&self) -> Quantities {
-        self.all_quantities()
+    fn quantities(&self) -> Arc<Quantities> {
+        Arc::clone(self.quantities.get_or_init(|| Arc::new(self.all_quantities())))
     }
     /// The unit is at most 1, and takes time to find out.
     fn objective_size(&mut self, terms: f64) -> f64 {

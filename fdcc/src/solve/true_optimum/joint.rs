@@ -212,7 +212,7 @@ fn start(planned: &[Planned], chain: &Chain) -> Start {
         _ => false,
     };
     if let Some(warm) = start.warm.as_mut().filter(|_| is_kinked) {
-        warm.mu = warm.mu.max(ROOM_OF_KINKS);
+        warm.mu = warm.mu.map(|mu| mu.max(ROOM_OF_KINKS));
     }
     start
 }

@@ -7,7 +7,6 @@ use crate::linalg::structure::triplets::{Family, Triplets};
 use std::ops::Range;
 
 /// Sums over the values of one matrix that belong to one chain.
-#[derive(Default)]
 pub(super) struct Sums {
     terms: Vec<Term>,
     /// Behind the last term of each sum.
@@ -41,23 +40,23 @@ impl Entries {
         sight: &Sight,
         places: impl Fn(&Family) -> Option<[usize; 2]>,
     ) -> Sums {
-        let mut terms = vec![Vec::new(); sight.len()];
+        // Each with its sum; as many as there may be.
+        let mut terms: Vec<(usize, Term)> = Vec::with_capacity(2 * self.0.len());
         self.0.retain(|(family, source)| {
             let is_whole = family.count == sight.chain.stages.intervals;
             let Some([a, b]) = places(family).filter(|_| is_whole) else { return true };
             let term = |seen: usize| Term { source: *source as u32, seen: seen as u32 };
-            terms[a].push(term(b));
+            terms.push((a, term(b)));
             if a != b {
-                terms[b].push(term(a));
+                terms.push((b, term(a)));
             }
             false
         });
-        let mut sums = Sums::default();
-        for terms in terms {
-            sums.terms.extend(terms);
-            sums.ends.push(sums.terms.len() as u32);
-        }
-        sums
+        // Those of a sum stay in their order.
+        terms.sort_by_key(|(sum, _)| *sum);
+        let end = |sum: usize| terms.partition_point(|it| it.0 <= sum) as u32;
+        let ends = (0..sight.len()).map(end).collect();
+        Sums { ends, terms: terms.into_iter().map(|(_, term)| term).collect() }
     }
 
     /// Calls `action(value, row, column)` for every entry that is left.
@@ -90,10 +89,10 @@ impl Sums {
             for term in &self.terms[first..*end as usize] {
                 let (start, seen) = (term.source as usize + batch.start, &seen[term.seen as usize]);
                 match values[start..].first_chunk::<BATCH>() {
-                    Some(values) if batch.len() == BATCH => {
-                        add_products::<FUSED>(values, seen, &mut sum)
-                    }
-                    _ => {
+                    // Beyond the last interval of a chain they belong to others, and nobody is
+                    // told of their sums.
+                    Some(values) => add_products::<FUSED>(values, seen, &mut sum),
+                    None => {
                         let mut last = NOTHING;
                         last[..batch.len()].copy_from_slice(&values[start..][..batch.len()]);
                         add_products::<FUSED>(&last, seen, &mut sum);

@@ -13,6 +13,8 @@ use crate::linalg::dense::lanes::Lanes;
 macro_rules! with_constant_sizes {
     ($this:ident.$function:ident($($arguments:expr),*)) => {
         match $this.sizes {
+            Sizes { n: 2, m: 1, inner: 0, q: 0 } => $this.$function::<2, 1, 0>($($arguments),*),
+            Sizes { n: 4, m: 1, inner: 0, q: 0 } => $this.$function::<4, 1, 0>($($arguments),*),
             Sizes { n: 5, m: 2, inner: 0, q: 1 } => $this.$function::<5, 2, 1>($($arguments),*),
             Sizes { n: 2, m: 1, inner: 0, q: 2 } => $this.$function::<2, 1, 2>($($arguments),*),
             Sizes { n: 2, m: 1, inner: 0, q: 3 } => $this.$function::<2, 1, 3>($($arguments),*),

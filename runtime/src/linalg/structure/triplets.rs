@@ -54,6 +54,21 @@ impl Triplets {
         })
     }
 
+    /// Row, column and value of each of these values, in order; quickest where the iterator goes
+    /// from one to the next itself (`for_each`, `sum`).
+    pub(crate) fn with_values<'v>(
+        &'v self,
+        values: &'v [f64],
+    ) -> impl Iterator<Item = (usize, usize, f64)> + 'v {
+        let mut rest = values;
+        self.families.iter().flat_map(move |f| {
+            let (own, others) = rest.split_at(f.count);
+            rest = others;
+            let numbered = own.iter().enumerate();
+            numbered.map(|(k, it)| (f.row + k * f.row_step, f.column + k * f.column_step, *it))
+        })
+    }
+
     /// `y += A x`
     pub fn multiply_add(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         self.for_each_stretch(values, |family, values| {

@@ -182,7 +182,8 @@ fn ended(
     };
     let kkt_error = stationarity(nlp, &v, &multipliers).max(constraint_violation(nlp, &v));
     let (mu, is_saddle, descent, decrement) = (0.0, false, None, f64::INFINITY);
-    Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts }
+    let assessed = None;
+    Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, assessed, decrement, counts }
 }
 
 /// Whether along a ray the objective falls without end and no condition ends it: each entry of the

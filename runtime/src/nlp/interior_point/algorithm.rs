@@ -14,6 +14,7 @@ use super::tuning::restoration::REQUIRED_DECREASE;
 use super::tuning::saddle::CREEPING_STEPS;
 use super::tuning::termination::ACCEPTABLE_ERROR;
 use super::watchdog::Watchdog;
+use crate::nlp::assessment::Assessment;
 use crate::nlp::{Counts, Nlp, Options, Progress, Status, Watch};
 use std::ops::ControlFlow;
 
@@ -63,6 +64,8 @@ pub(super) struct Algorithm {
     /// A point near by where the Lagrangian is lower, if the iterate is no minimum though neither
     /// slope nor curvature says so.
     pub(super) descent: Option<Vec<f64>>,
+    /// The measures of the scaled program at the iterate that is called solved or acceptable.
+    pub(super) assessed: Option<Assessment>,
     /// The last Newton decrement that was looked at, in units of the scaled objective.
     pub(super) decrement: f64,
     /// Whether the derivatives belong to the iterate.
@@ -103,6 +106,7 @@ impl Algorithm {
             departures: 0,
             is_saddle: false,
             descent: None,
+            assessed: None,
             decrement: f64::INFINITY,
             fresh: false,
             best: None,

@@ -53,14 +53,15 @@ impl Formulation {
         let variables = nlp.variable_bounds();
         let equality: Vec<bool> = rows.iter().map(Bounds::is_equality).collect();
         let fixed: Vec<bool> = variables.iter().map(Bounds::is_equality).collect();
+        let most = variables.len() + rows.len();
         let mut formulation = Formulation {
             variables: variables.len(),
             slacks: Vec::new(),
             inequalities: 0,
-            lower: Vec::new(),
-            upper: Vec::new(),
-            bounded_below: Vec::new(),
-            bounded_above: Vec::new(),
+            lower: Vec::with_capacity(most),
+            upper: Vec::with_capacity(most),
+            bounded_below: Vec::with_capacity(most),
+            bounded_above: Vec::with_capacity(most),
             one_sided: Vec::new(),
             target: rows.iter().map(|b| if b.is_equality() { b.lower } else { 0.0 }).collect(),
             fixed,

@@ -12,9 +12,11 @@ use crate::nlp::{Multipliers, Nlp, Options, Start};
 pub(super) fn prepare(nlp: &mut dyn Nlp, start: &Start, options: Options) -> Algorithm {
     let formulation = Formulation::new(nlp);
     let (mu, push) = match &start.warm {
-        Some(warm) if warm.mu > 0.0 => (warm.mu, WARM_START_BOUND_PUSH),
-        // A method without a barrier has no parameter of it.
-        Some(_) => (options.tol, WARM_START_BOUND_PUSH),
+        Some(warm) => {
+            // A method without a barrier has no parameter of it.
+            let mu = warm.mu.filter(|mu| *mu > 0.0).unwrap_or(options.tol);
+            (mu, WARM_START_BOUND_PUSH)
+        }
         None => (FIRST_MU, BOUND_PUSH),
     };
     let y = first_point(nlp, &formulation, &start.v, push);
@@ -47,13 +49,14 @@ fn first_point(nlp: &mut dyn Nlp, formulation: &Formulation, start: &[f64], push
             *value = bounds.lower;
         }
     }
-    let mut pushed = y.clone();
-    formulation.push_inside(&mut pushed, push);
-    let mut rows = vec![0.0; formulation.target.len()];
-    nlp.values(&pushed, &mut rows);
-    y.extend(
-        formulation.slacks.iter().map(|a| if rows[a.row].is_finite() { rows[a.row] } else { 0.0 }),
-    );
+    if !formulation.slacks.is_empty() {
+        let mut pushed = y.clone();
+        formulation.push_inside(&mut pushed, push);
+        let mut rows = vec![0.0; formulation.target.len()];
+        nlp.values(&pushed, &mut rows);
+        let finite = |row: f64| if row.is_finite() { row } else { 0.0 };
+        y.extend(formulation.slacks.iter().map(|it| finite(rows[it.row])));
+    }
     formulation.push_inside(&mut y, push);
     y
 }

@@ -253,8 +253,9 @@ fn attempt_scaled(
     let mut algorithm = initialisation::prepare(&mut scaled, &start, *options);
     let status = run(&mut algorithm, &mut scaled, &mut watch);
     let mu = algorithm.barrier.mu;
-    let Algorithm { at, counts, residuals, formulation, is_saddle, mut descent, decrement, .. } =
-        algorithm;
+    let Algorithm { at, counts, residuals, formulation, is_saddle, mut descent, .. } = algorithm;
+    let (decrement, assessed) = (algorithm.decrement, algorithm.assessed);
+    let assessed = assessed.filter(|_| scaled.is_as_written());
     descent.iter_mut().for_each(|v| scaled.unscale_point(v));
     let decrement = decrement / objective_scale;
     let mut multipliers = Multipliers {
@@ -267,7 +268,18 @@ fn attempt_scaled(
     let kkt_error = residuals.error(0.0);
     conclude(
         nlp,
-        Ended { status, v, multipliers, mu, kkt_error, is_saddle, descent, decrement, counts },
+        Ended {
+            status,
+            v,
+            multipliers,
+            mu,
+            kkt_error,
+            is_saddle,
+            descent,
+            assessed,
+            decrement,
+            counts,
+        },
         options,
     )
 }

@@ -21,6 +21,7 @@ use super::tuning::restoration::{FIRST_DECREASE, LARGEST_BOUND_MULTIPLIER, RHO};
 use crate::linalg::{Family, PhaseStages, Stages, Triplets};
 use crate::nlp::{Derivatives, Nlp, Options, Place, Progress, Quantities, Status, Watch};
 use crate::problem::Bounds;
+use std::sync::Arc;
 
 /// How a restoration phase ended.
 pub(super) enum Restored {
@@ -121,7 +122,7 @@ impl Nlp for Proximity<'_> {
     fn phases(&self) -> Vec<PhaseStages> {
         self.inner.phases()
     }
-    fn quantities(&self) -> Quantities {
+    fn quantities(&self) -> Arc<Quantities> {
         self.inner.quantities()
     }
     fn objective_size(&mut self, terms: f64) -> f64 {

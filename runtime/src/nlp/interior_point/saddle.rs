@@ -128,10 +128,11 @@ impl Algorithm {
         }
         let least = self.least_curvature(nlp, found);
         self.factor_at_iterate(least);
+        let sizes = self.own_sizes(nlp);
         (0..SIGN_PATTERNS).find_map(|pattern| {
             let start = signs(nlp, pattern);
             let (mut step, _) = self.softest_direction(&start, FEW_ITERATIONS)?;
-            self.stretch(&self.own_sizes(nlp), &mut step);
+            self.stretch(&sizes, &mut step);
             self.descent_along(nlp, &mut step, &SHORT_STEPS, counts)
         })
     }
@@ -326,8 +327,8 @@ impl Algorithm {
 /// quantities that follow each other the first four patterns have all signs, but for turning.
 fn signs(nlp: &dyn Nlp, pattern: usize) -> Vec<f64> {
     let is_even = |quantity: &usize| (quantity & pattern).count_ones().is_multiple_of(2);
-    let quantities = nlp.quantities().variables;
-    quantities.iter().map(|it| if is_even(it) { 1.0 } else { -1.0 }).collect()
+    let quantities = nlp.quantities();
+    quantities.variables.iter().map(|it| if is_even(it) { 1.0 } else { -1.0 }).collect()
 }
 
 fn turn(step: &mut SearchDirection) {

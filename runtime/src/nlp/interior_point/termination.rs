@@ -118,6 +118,7 @@ impl Algorithm {
     }
 
     fn word(&mut self, nlp: &mut dyn Nlp, found: &Assessment) -> Status {
+        self.assessed = Some(*found);
         self.descent = self.descent_from_kink(nlp, found);
         if !found.is_convincing(self.options.tol) {
             return Status::Acceptable;

@@ -81,10 +81,17 @@ impl ScalingFactors {
 pub(crate) fn objective_unit(nlp: &mut dyn Nlp, guess: &[f64]) -> f64 {
     let (quantities, v) = (nlp.quantities(), inside(nlp, guess));
     let magnitudes = magnitudes(nlp, &quantities, &v);
-    let variables: Vec<f64> = quantities.variables.iter().map(|i| unit(magnitudes[*i])).collect();
+    let units: Vec<f64> = magnitudes.iter().map(|size| unit(*size)).collect();
+    let variables: Vec<f64> = quantities.variables.iter().map(|i| units[*i]).collect();
+    let slope =
+        |nlp: &mut dyn Nlp, v: &[f64]| objective_slope(&quantities, &variables, &slopes(nlp, v));
+    let here = slope(nlp, &v);
+    if here >= 1.0 && here.is_finite() {
+        return 1.0;
+    }
     let near = near(nlp, &quantities, &v, &magnitudes);
-    let slopes = [&v, &near].map(|v| objective_slope(&quantities, &variables, &slopes(nlp, v)));
-    let largest = slopes.into_iter().filter(|slope| slope.is_finite()).fold(0.0, f64::max);
+    let near = slope(nlp, &near);
+    let largest = [here, near].into_iter().filter(|slope| slope.is_finite()).fold(0.0, f64::max);
     if largest > 0.0 { largest.min(1.0) } else { 1.0 }
 }
 
@@ -105,9 +112,9 @@ struct Steepness {
 impl Steepness {
     fn new(nlp: &dyn Nlp, quantities: &Quantities, variables: &[f64], at: &Derivatives) -> Self {
         let mut rows = vec![0.0f64; quantities.constraints.len()];
-        for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&at.jacobian) {
+        nlp.jacobian_structure().with_values(&at.jacobian).for_each(|(row, column, slope)| {
             rows[row] = rows[row].max((variables[column] * slope).abs());
-        }
+        });
         let conditions = largest(&quantities.constraints, rows.iter().copied());
         Steepness { objective: objective_slope(quantities, variables, at), rows, conditions }
     }

@@ -15,6 +15,8 @@ use crate::linalg::{PhaseStages, Stages, Triplets};
 use crate::problem::Bounds;
 use factors::ScalingFactors;
 pub(crate) use factors::objective_unit;
+use std::cell::OnceCell;
+use std::sync::Arc;
 
 /// The scaled NLP.
 pub(crate) struct Scaled<'a> {
@@ -28,6 +30,8 @@ pub(crate) struct Scaled<'a> {
     /// ScalingFactors of Jacobian and Hessian values; none where all are 1, as is usual.
     entries: Vec<f64>,
     curvatures: Vec<f64>,
+    /// Nothing as long as nobody asks.
+    quantities: OnceCell<Arc<Quantities>>,
 }
 
 impl<'a> Scaled<'a> {
@@ -38,19 +42,25 @@ impl<'a> Scaled<'a> {
             |bounds: &Bounds, s: f64| Bounds { lower: bounds.lower * s, upper: bounds.upper * s };
         let of_variables = inner.variable_bounds().iter().zip(variables);
         let of_rows = inner.constraint_bounds().iter().zip(rows);
-        let entries = inner.jacobian_structure().entries().map(|(row, i)| rows[row] * variables[i]);
-        let curvatures =
-            inner.hessian_structure().entries().map(|(i, j)| variables[i] * variables[j]);
+        let entries = products(inner.jacobian_structure(), rows, variables);
+        let curvatures = products(inner.hessian_structure(), variables, variables);
         Scaled {
             variable_bounds: of_variables.map(|(bounds, s)| scaled(bounds, 1.0 / s)).collect(),
             constraint_bounds: of_rows.map(|(bounds, s)| scaled(bounds, *s)).collect(),
             point: variables.clone(),
             multipliers: rows.clone(),
-            entries: unless_one(entries.collect()),
-            curvatures: unless_one(curvatures.collect()),
+            entries: unless_one(entries),
+            curvatures: unless_one(curvatures),
+            quantities: OnceCell::new(),
             inner,
             factors,
         }
+    }
+
+    /// Whether all factors are 1: then the measures of both programs are the same.
+    pub(crate) fn is_as_written(&self) -> bool {
+        let ScalingFactors { objective, variables, rows } = &self.factors;
+        *objective == 1.0 && variables.iter().chain(rows).all(|s| *s == 1.0)
     }
 
     /// What the objective is multiplied by.
@@ -89,10 +99,27 @@ impl<'a> Scaled<'a> {
         v.iter_mut().zip(&self.factors.variables).for_each(|(value, s)| *value *= s);
     }
 
+    fn scaled_quantities(&self) -> Quantities {
+        let own = self.inner.quantities();
+        // All variables of a quantity have one factor.
+        let mut units = own.units.clone();
+        for (i, s) in own.variables.iter().zip(&self.factors.variables) {
+            units[*i] = own.units[*i] / s;
+        }
+        Quantities { units, ..(*own).clone() }
+    }
+
     fn load(&mut self, w: &[f64]) {
         let both = w.iter().zip(&self.factors.variables);
         self.point.iter_mut().zip(both).for_each(|(v, (w, s))| *v = w * s);
     }
+}
+
+/// The factor of the row times that of the column, of each entry.
+fn products(structure: &Triplets, rows: &[f64], columns: &[f64]) -> Vec<f64> {
+    let mut products = Vec::with_capacity(structure.len());
+    structure.entries().for_each(|(row, column)| products.push(rows[row] * columns[column]));
+    products
 }
 
 /// Nothing where all are 1.
@@ -119,15 +146,8 @@ impl Nlp for Scaled<'_> {
     fn phases(&self) -> Vec<PhaseStages> {
         self.inner.phases()
     }
-    fn quantities(&self) -> Quantities {
-        let mut quantities = self.inner.quantities();
-        // All variables of a quantity have one factor.
-        let mut units = quantities.units.clone();
-        for (i, s) in quantities.variables.iter().zip(&self.factors.variables) {
-            units[*i] = quantities.units[*i] / s;
-        }
-        quantities.units = units;
-        quantities
+    fn quantities(&self) -> Arc<Quantities> {
+        Arc::clone(self.quantities.get_or_init(|| Arc::new(self.scaled_quantities())))
     }
     fn objective_size(&mut self, terms: f64) -> f64 {
         let scale = self.factors.objective;

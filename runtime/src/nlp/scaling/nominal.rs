@@ -51,7 +51,8 @@ fn ranges(nlp: &dyn Nlp, quantities: &Quantities) -> Vec<f64> {
     ranges
 }
 
-/// Estimates are at most `most` units.
+/// Estimates are at most `most` units; guesses and estimates below the inverse of that are what a
+/// solve before left of quantities at rest, and nothing is known of these by them.
 fn told(
     nlp: &mut dyn Nlp,
     quantities: &Quantities,
@@ -62,13 +63,21 @@ fn told(
     let ranges = ranges(nlp, quantities);
     let mut magnitudes: Vec<f64> =
         guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
-    if magnitudes.contains(&0.0) {
-        let demands = demands(nlp, quantities, v);
-        fill(&mut magnitudes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
+    if !magnitudes.contains(&0.0) {
+        return magnitudes;
     }
+    let of_unknown = |mut sizes: Vec<f64>, known: &[f64]| {
+        let all = sizes.iter_mut().zip(known).zip(&quantities.units);
+        let rounding = all.filter(|((size, known), unit)| **known == 0.0 && **size < *unit / most);
+        rounding.for_each(|((size, _), _)| *size = 0.0);
+        sizes
+    };
+    let guesses = of_unknown(guesses.to_vec(), &magnitudes);
+    let demands = demands(nlp, quantities, v);
+    fill(&mut magnitudes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
     while magnitudes.contains(&0.0) {
         let known = magnitudes.clone();
-        let found = estimates(nlp, quantities, v, &known);
+        let found = of_unknown(estimates(nlp, quantities, v, &known), &known);
         if found == known {
             // A signal begins somewhere; an unknown that nothing is known of is left as it is.
             fill(&mut magnitudes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });
@@ -137,13 +146,13 @@ fn demands(nlp: &mut dyn Nlp, quantities: &Quantities, v: &[f64]) -> Vec<f64> {
     let mut rows = vec![0.0; quantities.constraints.len()];
     nlp.values(v, &mut rows);
     let mut steepest = vec![(0, 0.0f64, 0); rows.len()];
-    for ((row, column), slope) in nlp.jacobian_structure().entries().zip(&slopes.jacobian) {
+    nlp.jacobian_structure().with_values(&slopes.jacobian).for_each(|(row, column, slope)| {
         let (quantity, most, entries) = &mut steepest[row];
-        if *slope != 0.0 {
+        if slope != 0.0 {
             (*quantity, *most, *entries) =
                 (quantities.variables[column], slope.abs(), *entries + 1);
         }
-    }
+    });
     let mut demands = vec![0.0f64; quantities.variables.iter().max().map_or(0, |last| last + 1)];
     let conditions =
         nlp.constraint_bounds().iter().zip(&rows).zip(&quantities.constraints).zip(steepest);

@@ -22,7 +22,9 @@ use crate::solution::switching_function_sizes;
 use links::TranscribedLink;
 use part::Part;
 pub(crate) use shape::{Shape, own_multipliers};
+use std::cell::OnceCell;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// The NLP of a chain, each phase on its own grid.
 pub struct ChainNlp<'c> {
@@ -38,6 +40,8 @@ pub struct ChainNlp<'c> {
     parameters: Vec<f64>,
     /// See [`Nlp::objective_unit`]; nothing as long as nobody asks.
     objective_unit: Option<f64>,
+    /// The same of [`Nlp::quantities`].
+    quantities: OnceCell<Arc<Quantities>>,
 }
 
 impl<'c> ChainNlp<'c> {
@@ -60,6 +64,7 @@ impl<'c> ChainNlp<'c> {
             hessian: Triplets::default(),
             parameters: chain.phases[0].parameters.iter().map(|it| it.value).collect(),
             objective_unit: None,
+            quantities: OnceCell::new(),
             parts,
             links,
         };
@@ -201,14 +206,17 @@ impl Nlp for ChainNlp<'_> {
     fn phases(&self) -> Vec<PhaseStages> {
         if self.stages().is_some() { Vec::new() } else { self.shape.phases.clone() }
     }
-    fn quantities(&self) -> Quantities {
-        self.all_quantities()
+    fn quantities(&self) -> Arc<Quantities> {
+        Arc::clone(self.quantities.get_or_init(|| Arc::new(self.all_quantities())))
     }
     /// The unit is at most 1, and takes time to find out.
     fn objective_size(&mut self, terms: f64) -> f64 {
         if terms >= NO_OBJECTIVE { terms } else { terms.max(NO_OBJECTIVE * self.objective_unit()) }
     }
     fn objective_unit(&mut self) -> f64 {
+        if let Some(only) = self.single() {
+            return only.objective_unit();
+        }
         if self.objective_unit.is_none() {
             let guess = self.guess();
             self.objective_unit = Some(objective_unit(self, &guess));

@@ -6,7 +6,7 @@ use crate::nlp::{Nlp, Quantities};
 impl ChainNlp<'_> {
     /// Signals of all phases, then unknowns; conditions of all phases, then those of the links.
     pub(super) fn all_quantities(&self) -> Quantities {
-        let each: Vec<Quantities> = self.parts.iter().map(|part| part.nlp.quantities()).collect();
+        let each: Vec<_> = self.parts.iter().map(|part| part.nlp.quantities()).collect();
         let stepped = each.iter().map(|of| of.stepped).sum();
         let (mut variables, mut constraints, mut units) = (Vec::new(), Vec::new(), Vec::new());
         let (mut signals, mut conditions) = (0, stepped);

@@ -49,14 +49,14 @@ impl Shape {
             let known = &warm.multipliers;
             let rows = each(&|of| of.constraints.clone()).concat();
             let linked = &known.constraints[known.constraints.len() - self.links..];
-            let mus = own.iter().filter_map(|start| Some(start.warm.as_ref()?.mu));
+            let mus = own.iter().filter_map(|start| start.warm.as_ref()?.mu);
             Warm {
                 multipliers: Multipliers {
                     constraints: [&rows, linked].concat(),
                     lower: self.variables(&each(&|of| of.lower.clone()), &known.lower),
                     upper: self.variables(&each(&|of| of.upper.clone()), &known.upper),
                 },
-                mu: mus.fold(0.0, f64::max),
+                mu: mus.reduce(f64::max),
                 widths: warm.widths.clone(),
             }
         });

@@ -266,3 +266,17 @@ fn what_only_a_coarse_scheme_cannot_do_is_found() {
     );
     assert!(!never.status().is_solved(), "{}", never.status_name());
 }
+
+/// Speed is kept at 2.5 after `1/1.5 + 2.5` units of time, all of them with an S-shaped rise: the
+/// time is `20/2.5 + 2.5/1 + 1/1.5`. 200 steps of implicit Euler end at the limit of iterations.
+#[test]
+fn where_one_scheme_comes_to_no_end_another_one_is_tried() {
+    let solution = solved(
+        "free T in [1, 60] guess 12  time t in [0, T]
+         state x start 0  state v in [0, 2.5] start 0  state a in [-1, 1] start 0
+         control j in [-1.5, 1.5]  dynamics { x' = v  v' = a  a' = j }
+         end x == 20  end v == 0  end a == 0  minimize T",
+    );
+    let off = (solution.objective() - (8.0 + 2.5 + 1.0 / 1.5)).abs();
+    assert!(solution.is_certified() && off < 1e-6, "{}", solution.objective());
+}

@@ -69,6 +69,29 @@ fn a_state_is_bounded_just_behind_a_jump() {
     );
 }
 
+/// A dose that is chosen, up to the limit at once: `a exp(-0.4 t)` is 0.3 for one unit of time, and
+/// 1.2 for three, beside 1. Of two doses the bound holds of what the first one has left, too.
+#[test]
+fn a_bound_is_met_right_behind_a_jump_whose_size_is_chosen() {
+    let square = |a: f64, time: f64| {
+        let left = (-0.4 * time).exp();
+        a * a * (1.0 - left * left) / 0.8 - 2.0 * a * (1.0 - left) / 0.4 + time
+    };
+    assert_certified(
+        "free d in [0, 5] guess 1 time t in [0, 4] state c in [0, 1.2] start 0.3
+         surface clock = t - 1 dynamics { c' = -0.4*c }
+         jump dose on clock rising at most 1 { c := c + d } minimize integral((c - 1)^2)",
+        square(0.3, 1.0) + square(1.2, 3.0),
+    );
+    assert_certified(
+        "free d in [0, 5] guess 1 free e in [0, 5] guess 1 time t in [0, 4]
+         state c in [0, 1.2] start 0.3 surface first = t - 1 surface second = t - 2.5
+         dynamics { c' = -0.4*c } jump a on first rising at most 1 { c := c + d }
+         jump b on second rising at most 1 { c := c + e } minimize integral((c - 1)^2)",
+        square(0.3, 1.0) + 2.0 * square(1.2, 1.5),
+    );
+}
+
 /// What a recorded motion breaks just before a jump is told: 2.7 exp(-1) = 0.99327 is.
 #[test]
 fn a_replay_looks_at_both_sides_of_a_jump() {

@@ -1,6 +1,6 @@
 //! In a closed loop the plan before is one interval old when the next one begins.
 
-use fdcc::Options;
+use fdcc::{Model, Options};
 use fdcc_tests::closed_loop::{CASES, run};
 
 #[test]
@@ -43,4 +43,23 @@ fn a_controller_that_is_asked_twice_keeps_its_plan() {
     };
     let (first, again) = (iterations(), iterations());
     assert!(again <= 3 && again < first, "{first} iterations, then {again}");
+}
+
+/// At rest a solve leaves numbers of 1e-20 and less. They are no sizes of quantities: another goal
+/// takes about as many iterations as from the guess, and no step is solved in units of its own.
+#[test]
+fn what_a_rest_leaves_is_no_size() {
+    let text = include_str!("../peers/acados/cart.fdc");
+    let model = Model::from_text("cart", text).expect("the model is right");
+    let mut controller = model.controller(40).expect("it has a width");
+    let mut iterations = |goal: f64| {
+        controller.set("goal", goal).expect("it is declared");
+        let found = controller.step(&[0.0; 4], &Options::default()).expect("four numbers");
+        assert!(found.is_solved() && found.problem.states.iter().all(|it| it.unit == 1.0));
+        found.outcome.solution.counts.iterations
+    };
+    let from_the_guess = iterations(0.5);
+    (0..5).for_each(|_| assert!(iterations(0.0) < from_the_guess));
+    let again = iterations(0.5);
+    assert!(again <= 2 * from_the_guess, "{from_the_guess} iterations, after a rest {again}");
 }

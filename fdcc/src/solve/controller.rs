@@ -170,10 +170,10 @@ impl Controller {
         }
         self.compiled.begin_at(state);
         let start = self.last.as_ref().map_or(Start::Guess, |plan| begin_of(plan, state));
-        let found = self.compiled.solve(&Options { start, ..*options })?;
+        let found = self.compiled.solve_step(&Options { start, ..*options })?;
         let is_lost = !found.is_solved() && (options.stop)().is_continue() && self.last.is_some();
         let found = match is_lost {
-            true => self.compiled.solve(&Options { start: Start::Guess, ..*options })?,
+            true => self.compiled.solve_step(&Options { start: Start::Guess, ..*options })?,
             false => found,
         };
         Ok(self.last.insert(found))

@@ -166,6 +166,17 @@ impl Compiled {
         Ok(if more.status().is_solved() { more } else { first })
     }
 
+    /// Solves a step of a closed loop. What begins at the plan before stays in the units of the
+    /// model: at rest all numbers are far smaller than one of these, and no step has the time to be
+    /// compiled in others.
+    fn solve_step(&self, options: &Options) -> Result<Solution, Error> {
+        let begins_anew = matches!(options.start, Start::Guess | Start::Record(_));
+        match begins_anew || self.without_kinks.is_some() {
+            true => self.solve(options),
+            false => self.solve_in_given_units(options),
+        }
+    }
+
     /// From the starts that were asked for; first without kinks, where there are any.
     fn solve_from(&self, options: &Options) -> Result<Solution, Error> {
         let without = self.without_kinks.as_ref();
@@ -176,9 +187,13 @@ impl Compiled {
     /// Solves; once more in other units where numbers turn out to be far smaller than one of
     /// theirs.
     fn solve_as_it_is(&self, options: &Options) -> Result<Solution, Error> {
+        magnitudes::with_own_magnitudes(self.solve_in_given_units(options)?, options)
+    }
+
+    /// Solves; once more in another way where nothing is found.
+    fn solve_in_given_units(&self, options: &Options) -> Result<Solution, Error> {
         let first = self.with_other_kernel(self.solve_once(options)?, options)?;
-        let first = self.with_other_scheme(first, options)?;
-        magnitudes::with_own_magnitudes(first, options)
+        self.with_other_scheme(first, options)
     }
 
     /// In three ways: time is divided at jumps and at conditions between the ends, and the chain of

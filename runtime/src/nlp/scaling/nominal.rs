@@ -15,7 +15,8 @@
 //! more. Beyond 1 they do not raise it.
 
 use crate::nlp::tuning::nominal::{
-    GOLDEN, LARGEST_ASKED_FOR, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, SMALL,
+    GOLDEN, LARGEST_ASKED_FOR, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, NO_SIZE,
+    SMALL,
 };
 use crate::nlp::{Derivatives, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -51,7 +52,8 @@ fn ranges(nlp: &dyn Nlp, quantities: &Quantities) -> Vec<f64> {
     ranges
 }
 
-/// Estimates are at most `most` units.
+/// Estimates are at most `most` units. What a solve before left of quantities at rest says nothing
+/// of their sizes.
 fn told(
     nlp: &mut dyn Nlp,
     quantities: &Quantities,
@@ -62,13 +64,22 @@ fn told(
     let ranges = ranges(nlp, quantities);
     let mut magnitudes: Vec<f64> =
         guesses.iter().zip(ranges).map(|(guess, range)| stated(*guess, range)).collect();
-    if magnitudes.contains(&0.0) {
-        let demands = demands(nlp, quantities, v);
-        fill(&mut magnitudes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
+    if !magnitudes.contains(&0.0) {
+        return magnitudes;
     }
+    let of_unknown = |mut sizes: Vec<f64>, known: &[f64]| {
+        let all = sizes.iter_mut().zip(known).zip(&quantities.units);
+        let rounding =
+            all.filter(|((size, known), unit)| **known == 0.0 && **size < NO_SIZE * *unit);
+        rounding.for_each(|((size, _), _)| *size = 0.0);
+        sizes
+    };
+    let guesses = of_unknown(guesses.to_vec(), &magnitudes);
+    let demands = demands(nlp, quantities, v);
+    fill(&mut magnitudes, |i| if demands[i] > 0.0 { demands[i].max(guesses[i]) } else { 0.0 });
     while magnitudes.contains(&0.0) {
         let known = magnitudes.clone();
-        let found = estimates(nlp, quantities, v, &known);
+        let found = of_unknown(estimates(nlp, quantities, v, &known), &known);
         if found == known {
             // A signal begins somewhere; an unknown that nothing is known of is left as it is.
             fill(&mut magnitudes, |i| if i < quantities.stepped { guesses[i] } else { 0.0 });

@@ -105,6 +105,8 @@ pub(crate) mod nominal {
     pub(crate) const LEAST_PART: f64 = 1e-2;
     /// A range of more units is no statement about a size.
     pub(crate) const LONGEST_RANGE: f64 = 1e4;
+    /// A guess, or an estimate, below this part of its unit is rounding (decision 58).
+    pub(crate) const NO_SIZE: f64 = 1e-15;
     /// What is smaller than this part of its unit at an answer may be rounding.
     pub(crate) const LEAST_ANSWER: f64 = 1e-4;
     /// Estimates beyond so many units, or below its inverse, are rounding or poles.

@@ -15,7 +15,8 @@
 //! more. Beyond 1 they do not raise it.
 
 use crate::nlp::tuning::nominal::{
-    GOLDEN, LARGEST_ASKED_FOR, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, SMALL,
+    GOLDEN, LARGEST_ASKED_FOR, LARGEST_ESTIMATE, LEAST_ANSWER, LEAST_PART, LONGEST_RANGE, NO_SIZE,
+    SMALL,
 };
 use crate::nlp::{Derivatives, Nlp, Quantities};
 use crate::problem::Bounds;
@@ -51,8 +52,8 @@ fn ranges(nlp: &dyn Nlp, quantities: &Quantities) -> Vec<f64> {
     ranges
 }
 
-/// Estimates are at most `most` units; guesses and estimates below the inverse of that are what a
-/// solve before left of quantities at rest, and nothing is known of these by them.
+/// Estimates are at most `most` units. What a solve before left of quantities at rest says nothing
+/// of their sizes.
 fn told(
     nlp: &mut dyn Nlp,
     quantities: &Quantities,
@@ -68,7 +69,8 @@ fn told(
     }
     let of_unknown = |mut sizes: Vec<f64>, known: &[f64]| {
         let all = sizes.iter_mut().zip(known).zip(&quantities.units);
-        let rounding = all.filter(|((size, known), unit)| **known == 0.0 && **size < *unit / most);
+        let rounding =
+            all.filter(|((size, known), unit)| **known == 0.0 && **size < NO_SIZE * *unit);
         rounding.for_each(|((size, _), _)| *size = 0.0);
         sizes
     };

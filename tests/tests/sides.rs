@@ -1,5 +1,5 @@
 //! On which side of a surface a state is, and whether it can go to the other one: surfaces whose
-//! functions have kinks that are surfaces themselves, and kinks that are
+//! functions have kinks that are surfaces themselves, surfaces that are touched, and kinks that are
 //! left from rest. All in closed form.
 
 use fdcc_compiler::{compile_sensitivities, compile_simulation};
@@ -78,6 +78,43 @@ fn a_surface_that_is_not_met_has_no_part_in_a_gradient() {
     assert!((found.value - 1.0).abs() < 1e-12, "{}", found.value);
     assert_eq!((found.forward[0], found.adjoint[0]), (0.0, 0.0));
     assert!(found.nondifferentiabilities.is_empty(), "{:?}", found.nondifferentiabilities);
+}
+
+/// Thrown up so that it just comes to `p`, where the field behind takes it farther, at once or by
+/// and by; and mirrored.
+#[test]
+fn a_surface_that_is_touched_may_be_left_to_both_sides_where_the_field_behind_leads_away() {
+    let late = "state x start -1  state v start 1  surface p = x + 0.5
+        dynamics { x' = v  v' in match p { below => -1, above => 1 } }";
+    let mirrored = "state x start 1  state v start -1  surface p = x - 0.5
+        dynamics { x' = v  v' in match p { below => -1, above => 1 } }";
+    let early = "state x start -1  surface p = x
+        dynamics { x' in match p { below => 2*(1 - t), above => 1 } }";
+    for (text, end) in [(late, vec![-0.5, 0.0]), (mirrored, vec![0.5, 0.0]), (early, vec![0.0])] {
+        let found = run(&format!("time t in [0, 2.5]  {text}"));
+        let Status::NotUnique { surface: 0, candidates } = &found.status else {
+            panic!("{text}: {:?}", found.status)
+        };
+        let sides: Vec<i8> = candidates.iter().map(|it| it.sides[0].1).collect();
+        assert_eq!(sides, [1, -1], "{text}");
+        assert!((found.end_time - 1.0).abs() < 1e-7, "{text}: {}", found.end_time);
+        for (got, expected) in found.end.iter().zip(&end) {
+            assert!((got - expected).abs() < 1e-7, "{text}: {:?}", found.end);
+        }
+    }
+}
+
+#[test]
+fn a_surface_that_is_touched_is_no_event_where_the_field_behind_leads_back() {
+    let late = "time t in [0, 2]  state x start -1  state v start 1  surface p = x + 0.5
+        dynamics { x' = v  v' in match p { below => -1, above => -3 } }";
+    expect(late, &[], &[-1.0, -1.0]);
+    let early = "time t in [0, 2]  state x start -1  surface p = x
+        dynamics { x' in match p { below => 2*(1 - t), above => -1 } }";
+    expect(early, &[], &[-1.0]);
+    let idle = "time t in [0, 2]  state x start -1  state v start 1  surface p = x + 0.5
+        dynamics { x' = v  v' = -1 }  jump h on p rising { v := 1 }";
+    expect(idle, &[], &[-1.0, -1.0]);
 }
 
 /// `x'' = 1 + 2 x` from rest at 0: friction lets go at once, and `x` is above its kink from then

@@ -10,6 +10,7 @@ mod record;
 mod recorder;
 mod sides;
 mod staying;
+mod touching;
 mod zeno;
 
 use super::controls::Controls;

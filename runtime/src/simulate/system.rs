@@ -207,6 +207,17 @@ impl System {
         other
     }
 
+    /// Why its time cannot pass: its ends are no numbers, or in the wrong order.
+    pub fn wrong_times(&self) -> Option<String> {
+        let [first, last] = self.interval;
+        let wrong = match (first.is_finite() && last.is_finite(), first <= last) {
+            (false, _) => "both must be numbers",
+            (true, false) => "it must not run backwards",
+            (true, true) => return None,
+        };
+        Some(format!("time runs from {first} to {last}; {wrong}"))
+    }
+
     /// The guess of states, then controls, at a normalised time.
     pub fn guessed(&self, tau: f64) -> Vec<f64> {
         value(&*self.guess, &[tau], &self.parameter_values())

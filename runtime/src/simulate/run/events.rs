@@ -118,7 +118,10 @@ impl Run<'_> {
             surfaces.retain(|&surface| !self.stays_beside(surface));
             let next = decide(&mut self.field, self.t, &self.x, &surfaces)?;
             let crossed = next.iter().filter(|it| !it.rests);
-            let jump = crossed.clone().find_map(|it| self.jump_at(it.surface, it.mode));
+            let due = crossed.clone().filter_map(|it| self.jump_at(it.surface, it.mode));
+            let due: Vec<usize> = due.collect();
+            self.note_orders(&due);
+            let jump = due.first().copied();
             if jump.is_none() && self.rest_again(&next) {
                 surfaces = self.surfaces_here();
                 continue;

@@ -5,6 +5,7 @@ mod arrival;
 mod between;
 mod events;
 mod holding;
+mod order;
 mod pile;
 mod record;
 mod recorder;
@@ -190,6 +191,7 @@ impl<'a> Run<'a> {
             time: self.record.time,
             states: self.record.states,
             events: self.record.events,
+            orders: self.record.orders,
             end_time: self.t,
             end: self.x,
             objective: objective.first().copied().filter(|_| is_complete),

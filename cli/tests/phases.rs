@@ -397,3 +397,17 @@ minimize vx^2 + vy^2
     let again = json(&again);
     assert!((number(&again["objective"]) - 24.0315807218).abs() < 1e-6);
 }
+
+/// As of a model of one piece.
+#[test]
+fn a_phase_whose_time_runs_backwards_is_refused() {
+    let text = b"model back\nparam T = 1\nphase a { time t in [0, T] state x start 0 \
+        dynamics { x' = 1 } }\nphase b like a { time t in [T, 2] }\nlink a -> b { same }\n";
+    let folder = folder("phases_backwards", &[("back.fdc", text)]);
+    let simulate = |set: &str| fdcc(&folder, &["simulate", "back.fdc", "--set", set], "");
+    expect_exit(&simulate("T=1.5"), 0, "forwards");
+    let output = simulate("T=3");
+    expect_exit(&output, 3, "backwards");
+    let told = "phase `b`: time runs from 3 to 2; it must not run backwards";
+    assert!(stderr(&output).contains(told), "{}", stderr(&output));
+}

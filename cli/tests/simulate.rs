@@ -427,3 +427,18 @@ fn unknowns_are_given_values() {
     let solve = fdcc(&folder, &["solve", "run.fdc", "--set", "T=4"], "");
     assert!(stderr(&solve).contains("`T` is an unknown"), "{}", stderr(&solve));
 }
+
+/// The order of the text is one of two, and is said to be.
+#[test]
+fn jumps_whose_order_matters_are_told() {
+    let two = "time t in [0, 1]\nstate x start 0\nstate z start 1\nsurface p = x - 0.5\n\
+               surface q = 2*x - 1\ndynamics { x' = 1  z' = 0 }\n\
+               jump a on p rising { z := z + 1 }\njump b on q rising { z := 2*z }\n";
+    let folder = folder("simulate_orders", &[("two.fdc", two.as_bytes())]);
+    let output = fdcc(&folder, &["simulate", "two.fdc"], "");
+    let told = "note: `a` and `b` jump together at t = 0.5, and lead elsewhere in the other order";
+    assert!(stdout(&output).contains(told), "{}", stdout(&output));
+    let document = json(&fdcc(&folder, &["simulate", "two.fdc", "--json"], ""));
+    let expected = serde_json::json!([{ "time": 0.5, "jumps": ["a", "b"] }]);
+    assert_eq!(document["orders"], expected);
+}

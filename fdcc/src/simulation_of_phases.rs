@@ -71,7 +71,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// A model that cannot be simulated; a record that does not belong to it.
+    /// A model that cannot be simulated; a phase whose time runs backwards; a record that does not
+    /// belong to it.
     pub fn simulate_phases(
         &self,
         record: Option<&Record>,
@@ -93,7 +94,11 @@ impl Model {
                 controls = replay.controls;
             }
             let model = self.with_meaning(own);
-            let simulation = model.simulate(&controls, accuracy)?;
+            let system = model.system()?;
+            if let Some(wrong) = system.wrong_times() {
+                return Err(Error::Call(format!("phase `{}`: {wrong}", phase.place.name)));
+            }
+            let simulation = Simulation::new(&model, system, &controls, accuracy);
             note(&mut course, at, &simulation, &controls);
             found.all.push(simulation);
             found.models.push(model);

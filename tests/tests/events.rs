@@ -1,7 +1,7 @@
 //! What an event does to a state, and what a simulation says where events cannot be told apart.
 
 use fdcc_compiler::compile_simulation;
-use fdcc_runtime::simulate::{Controls, EventKind, Options, Simulation, Status, simulate};
+use fdcc_runtime::simulate::{Controls, EventKind, Options, Order, Simulation, Status, simulate};
 use fdcc_tests::models::meaning;
 use fdcc_tests::random::Random;
 
@@ -205,4 +205,21 @@ fn a_ball_that_starts_on_the_ground_bounces_once() {
     assert!(matches!(simulation.status, Status::Completed), "{:?}", simulation.status);
     assert_eq!(simulation.events.len(), 1, "{:?}", simulation.events);
     assert!((simulation.end[0] - 0.3).abs() < 1e-12, "{:?}", simulation.end);
+}
+
+/// Whether `z` is 4 or 3 is a matter of order; two sums are not.
+#[test]
+fn jumps_at_one_time_are_told_where_their_order_matters() {
+    for (second, expected) in [("2*z", 1), ("z + 3", 0)] {
+        let text = format!(
+            "time t in [0, 1]  state x start 0  state y start 0  state z start 1
+            surface p = x - 0.5  surface q = y - 0.5  dynamics {{ x' = 1  y' = 1  z' = 0 }}
+            jump a on p rising at most 1 {{ z := z + 1 }}
+            jump b on q rising at most 1 {{ z := {second} }}"
+        );
+        let found = run(&text);
+        assert_eq!((found.orders.len(), found.events.len()), (expected, 2), "{:?}", found.orders);
+        let is_right = |it: &Order| it.jumps == [0, 1] && (it.time - 0.5).abs() < 1e-12;
+        assert!(found.orders.iter().all(is_right), "{:?}", found.orders);
+    }
 }

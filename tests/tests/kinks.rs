@@ -16,7 +16,7 @@ struct Kink {
 }
 
 /// The first derivative of each model is by the parameter named.
-const KINKS: [Kink; 12] = [
+const KINKS: [Kink; 14] = [
     Kink {
         // x(T) = (x0 - T)+
         text: "param x0 = 1  time t in [0, 1]  state x start x0  surface zero = x
@@ -94,6 +94,22 @@ const KINKS: [Kink; 12] = [
         trouble: Some((NondifferentiabilityKind::End, 2.0)),
         by: "F",
         sides: [0.0, 0.5],
+    },
+    Kink {
+        // one that starts at the limit and is let go at once: v(1) = 1/2 for a < 0
+        text: "param a = 0  time t in [0, 1]  state v start a  surface p = v
+            dynamics { v' in 1 + t - Sgn(p) }  minimize v(end)",
+        trouble: Some((NondifferentiabilityKind::Limit, 0.0)),
+        by: "a",
+        sides: [0.0, 1.0],
+    },
+    Kink {
+        // the same, written otherwise
+        text: "param a = 0  time t in [0, 1]  state x start 0  state v start a  surface p = v
+            dynamics { x' = v  v' in match p { below => 1, above => t } }  minimize v(end)",
+        trouble: Some((NondifferentiabilityKind::Limit, 0.0)),
+        by: "a",
+        sides: [0.0, 1.0],
     },
     Kink {
         // friction in every direction: v(1) = F - 1 for F > 1

@@ -3,7 +3,9 @@
 //! is a derivative. All in closed form.
 
 use fdcc_compiler::{compile_sensitivities, compile_simulation};
-use fdcc_runtime::sensitivity::{KinkMet, Quantity, Sensitivity, gradient};
+use fdcc_runtime::sensitivity::{
+    KinkMet, NondifferentiabilityKind, Quantity, Sensitivity, gradient, one_sided,
+};
 use fdcc_runtime::simulate::{Controls, EventKind, Options, Simulation, Status, simulate};
 use fdcc_tests::models::meaning;
 
@@ -143,4 +145,67 @@ fn a_wall_that_only_jumps_multiplies_no_ways() {
     expect_events(&text(""), &events(0), &[0.1, 0.0]);
     let two = "surface other = 2*x - 0.2  jump far on other falling at most 1 { x := 9 }";
     expect_events(&text(two), &events(1), &[0.1, 0.0]);
+}
+
+/// Held on `min(t, 1)` until `p`, and `v(end) = min(p, 1)`: a little less time takes away what the
+/// slope before 1 gives, a little more adds nothing. So a speed that is held on `min(2*t, p)`.
+#[test]
+fn a_hold_that_ends_on_a_kink_has_derivatives_of_sides() {
+    let time = "[0, p]  state v start 0  surface s = v - min(t, 1)";
+    let level = "[0, 0.5]  state v start 0  surface s = v - min(2*t, p)";
+    let start = "[0, 1]  state v start 0*p  surface s = v - min(t, 1)";
+    for (text, kink) in [(time, true), (level, true), (start, false)] {
+        for p in [0.9, 1.0, 1.1] {
+            let found = by_p(&format!(
+                "param p = {p}  time t in {text}  dynamics {{ v' in -3*Sgn(s) }}  minimize v(end)"
+            ));
+            let end = found.simulation.end_time;
+            let at_end = |met: &KinkMet| matches!(met, KinkMet::BySurface(time) if *time == end);
+            let is_met = found.kink.as_ref().is_some_and(|it| at_end(&it.met));
+            assert_eq!(is_met, kink && p == 1.0, "{text} at {p}: {:?}", found.kink);
+        }
+    }
+}
+
+/// `z := z + a` leaves the state above its surface for `a > 0`, and below, to jump again, for `a <
+/// 0`: then `z(1)` comes to -1. What resets leave where it was, or send back, is no matter of `a`.
+#[test]
+fn a_reset_onto_its_own_surface_is_seen() {
+    let on = "state x start 0  state z start -0.5  surface p = x + z  dynamics { x' = 1  z' = 0 }
+        jump h on p rising";
+    let ball = "state x start 0  state z start 1  surface p = z  dynamics { x' = -1  z' = x }
+        jump h on p falling at most 2";
+    let cases = [
+        (on, "{ z := z + a }", 0.0, true),
+        (on, "{ z := z + a }", 0.1, false),
+        (on, "at most 1 { z := z + a*x }", 0.0, true),
+        (ball, "{ x := -0.5*x + a }", 0.0, false),
+        (ball, "{ z := 0  x := -0.5*x + a }", 0.0, false),
+    ];
+    for (text, reset, a, is_met) in cases {
+        let text = format!("param a = {a}  time t in [0, 2]  {text} {reset}  minimize z(end)");
+        let system = compile_sensitivities(&meaning(&text)).expect("it can be simulated");
+        let (by, options) = ([Quantity::Parameter(0)], Options::default());
+        let found = gradient(&system, &Controls::Guess, &options, &by).expect("it ends");
+        let seen = &found.nondifferentiabilities;
+        let is_seen = seen.iter().any(|it| it.kind == NondifferentiabilityKind::Coincident);
+        assert_eq!(is_seen, is_met, "{text}: {seen:?}");
+        if a == 0.0 && reset == "{ z := z + a }" {
+            let [below, above] = one_sided(&system, &Controls::Guess, &options, &by)[0];
+            assert!(below.is_none_or(f64::is_infinite), "{below:?}");
+            assert!(above.is_some_and(|it| (it - 1.0).abs() < 1e-6), "{above:?}");
+        }
+    }
+}
+
+/// What begins and ends at once: `x(end)` moves with its speed of 1.
+#[test]
+fn a_time_of_no_length_grows() {
+    let text = "param p = 1  time t in [0, p]  state x start 0  control u in [-2, 2] guess 1
+        dynamics { x' = u - 0.5*x }  minimize 3*x(end) + integral(x)";
+    let system = compile_sensitivities(&meaning(text)).expect("it can be simulated");
+    let short = system.with_parameters(&[0.0]);
+    let by = [Quantity::Parameter(0)];
+    let found = gradient(&short, &Controls::Guess, &Options::default(), &by).expect("it ends");
+    assert_eq!((found.forward[0], found.adjoint[0]), (3.0, 3.0));
 }

@@ -75,6 +75,7 @@ mod section_two;
 mod section_two_page;
 mod semantics;
 mod sensitivities;
+mod sides;
 mod signals;
 mod simulations;
 mod slips;

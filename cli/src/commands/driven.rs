@@ -133,14 +133,8 @@ impl Driven {
 
     /// The controls for a system. What is odd about them is said on the standard error.
     pub fn controls(&self, driver: Driver, system: &System) -> Result<Controls, Failure> {
-        let [first, last] = system.interval;
-        let wrong = match (first.is_finite() && last.is_finite(), first <= last) {
-            (false, _) => Some("both must be numbers"),
-            (true, false) => Some("it must not run backwards"),
-            (true, true) => None,
-        };
-        if let Some(wrong) = wrong {
-            return Err(Failure::Usage(format!("time runs from {first} to {last}; {wrong}")));
+        if let Some(wrong) = system.wrong_times() {
+            return Err(Failure::Usage(wrong));
         }
         let Driver { replay, .. } = driver;
         let doubt = replay.doubts(system.interval).filter(|_| self.log != Some(Level::None));

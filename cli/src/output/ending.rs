@@ -6,7 +6,7 @@ use fdcc::names::event_name;
 use fdcc_grammar::SourceFile;
 use fdcc_runtime::nlp::Stop;
 use fdcc_runtime::problem::Origin;
-use fdcc_runtime::simulate::{Candidate, Event, EventKind, Simulation, Status, System};
+use fdcc_runtime::simulate::{Candidate, Event, EventKind, Order, Simulation, Status, System};
 use serde::Serialize;
 
 /// The status, and one object that explains it unless it is `completed`.
@@ -217,6 +217,32 @@ pub struct EventEntry {
     pub state: Named<f64>,
     before: Named<f64>,
     after: Named<f64>,
+}
+
+/// Two jumps at one time, which lead elsewhere in the other order.
+#[derive(Clone, Serialize)]
+pub struct OrderEntry {
+    time: f64,
+    /// The one that acted first, then the other.
+    jumps: [String; 2],
+}
+
+/// Where the order of jumps matters.
+pub fn orders(system: &System, simulation: &Simulation) -> Vec<OrderEntry> {
+    let name = |jump: usize| system.jumps[jump].name.clone();
+    let entry = |it: &Order| OrderEntry { time: it.time, jumps: it.jumps.map(name) };
+    simulation.orders.iter().map(entry).collect()
+}
+
+impl OrderEntry {
+    /// What is to be known of it.
+    pub fn words(&self, units: &Units) -> String {
+        let ([first, other], time) = (&self.jumps, units.value("time", self.time, 6));
+        format!(
+            "`{first}` and `{other}` jump together at t = {time}, and lead elsewhere in the other \
+             order; the surface that is declared first went first"
+        )
+    }
 }
 
 /// All events in the order of time.

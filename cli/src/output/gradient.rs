@@ -235,7 +235,8 @@ impl Reason {
             "corner" => format!("`{surface}` meets another surface at t = {time}"),
             "coincident" => {
                 format!(
-                    "`{surface}` is met at t = {time}, when the controls change or at the start"
+                    "`{surface}` is met at t = {time}, when the controls change, at the start, or \
+                     right after a jump there"
                 )
             }
             "limit" => format!("`{surface}` is held as hard as it can be from t = {time} on"),

@@ -1,6 +1,6 @@
 //! The JSON document of a simulation, its table, and its words for people.
 
-use super::ending::{Ending, EventEntry, events, state};
+use super::ending::{Ending, EventEntry, OrderEntry, events, orders, state};
 use super::named::Named;
 use super::plots::{Drawn, drawn};
 use super::units::{Shown, Units};
@@ -38,6 +38,8 @@ pub struct RunEntry {
     time: Vec<f64>,
     states: Named<Vec<f64>>,
     pub events: Vec<EventEntry>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    orders: Vec<OrderEntry>,
     /// `time`, then the states.
     end: Named<f64>,
     integrals: Named<f64>,
@@ -106,6 +108,7 @@ impl RunEntry {
             time: simulation.time.clone(),
             states: columns.map(|(column, state)| (state.name.clone(), column.clone())).collect(),
             events: events(system, simulation),
+            orders: orders(system, simulation),
             end: Named(end),
             integrals: integrals.map(|(value, state)| (state.name.clone(), *value)).collect(),
             objective: simulation.objective,
@@ -139,6 +142,9 @@ impl RunEntry {
             let state = units.pairs(&event.state, 12);
             writeln!(text, " {time:>16}  {surface:<10} {what:<16} {state}")
                 .expect("a string takes everything");
+        }
+        for order in &self.orders {
+            writeln!(text, " note: {}", order.words(units)).expect("a string takes everything");
         }
         let integrals = units.pairs(&self.integrals, 12);
         let value = |value: f64| units.value("objective", value, 12);

@@ -27,8 +27,8 @@ pub use controls::{Controls, Polynomials};
 pub use mode::Mode;
 pub(crate) use modes::complementarity::selectors;
 pub use result::{
-    Candidate, Counts, Event, EventKind, Extreme, Integrator, Method, Options, Simulation, Status,
-    Watch,
+    Candidate, Counts, Event, EventKind, Extreme, Integrator, Method, Options, Order, Simulation,
+    Status, Watch,
 };
 pub use run::{controls_at, simulate};
 pub(crate) use steps::{departure, dormand_prince, radau};

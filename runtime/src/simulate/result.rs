@@ -165,6 +165,15 @@ pub struct Event {
     pub after: Vec<f64>,
 }
 
+/// Two jumps of different surfaces at one time, which lead elsewhere in the other order.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Order {
+    /// When.
+    pub time: f64,
+    /// The one that acts first, as its surface is declared first, and the other.
+    pub jumps: [usize; 2],
+}
+
 /// One way to go on where there are several: the sides of the surfaces that meet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
@@ -248,6 +257,8 @@ pub struct Simulation {
     pub states: Vec<Vec<f64>>,
     /// In the order of time.
     pub events: Vec<Event>,
+    /// Where the order of events at one time matters.
+    pub orders: Vec<Order>,
     /// Last time that was reached.
     pub end_time: f64,
     /// State there, integrals last.

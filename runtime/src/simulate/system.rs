@@ -158,15 +158,19 @@ impl System {
     /// The functions of the surfaces at a point `[t | x | u | s]`, whose selectors become the sides
     /// that it is on.
     pub fn switching_at(&self, point: &mut [f64], parameters: &[f64]) -> Vec<f64> {
-        let (surfaces, kinks) = (self.surfaces.len(), self.kinks.outputs());
-        let first = point.len() - surfaces - kinks;
+        let surfaces = self.surfaces.len();
+        let first = point.len() - surfaces - self.kinks.outputs();
         // Each pass is right for one more surface whose function has a kink on another one.
-        let passes = if kinks == 0 { 0 } else { surfaces };
-        for _ in 0..passes {
+        for _ in 0..surfaces {
             self.choose_sides(point, parameters);
             let psi = value(&*self.switching, point, parameters);
-            let sides = psi.iter().map(|psi| if *psi > 0.0 { 1.0 } else { -1.0 });
-            point[first..].iter_mut().zip(sides).for_each(|(side, now)| *side = now);
+            let side = |psi: &f64| if *psi > 0.0 { 1.0 } else { -1.0 };
+            let sides: Vec<f64> = psi.iter().map(side).collect();
+            let known = &mut point[first..first + surfaces];
+            if known == &sides[..] {
+                return psi;
+            }
+            known.copy_from_slice(&sides);
         }
         value(&*self.switching, point, parameters)
     }
@@ -201,6 +205,17 @@ impl System {
         other.start = value(&*self.start_of, &[], values);
         other.interval.copy_from_slice(&value(&*self.interval_of, &[], values));
         other
+    }
+
+    /// Why its time cannot pass: its ends are no numbers, or in the wrong order.
+    pub fn wrong_times(&self) -> Option<String> {
+        let [first, last] = self.interval;
+        let wrong = match (first.is_finite() && last.is_finite(), first <= last) {
+            (false, _) => "both must be numbers",
+            (true, false) => "it must not run backwards",
+            (true, true) => return None,
+        };
+        Some(format!("time runs from {first} to {last}; {wrong}"))
     }
 
     /// The guess of states, then controls, at a normalised time.

@@ -10,7 +10,7 @@ use crate::sensitivity::nondifferentiability::objective_kink::{Direction, object
 use crate::sensitivity::nondifferentiability::parameter_kink::parameter_kink;
 use crate::sensitivity::nondifferentiability::pile::moved_by_pile;
 use crate::sensitivity::nondifferentiability::reset_kink::{Moved, reset_kink};
-use crate::sensitivity::nondifferentiability::surface_kink::surface_kink;
+use crate::sensitivity::nondifferentiability::surface_kink::{kink_at_the_end, surface_kink};
 use crate::sensitivity::nondifferentiability::{Nondifferentiability, nondifferentiabilities};
 use crate::simulate::{Controls, Options, Piece, Simulation, Status, System, Tape, simulate};
 use nalgebra::DMatrix;
@@ -132,7 +132,9 @@ pub(super) fn along_own_steps(
         adjoint,
         costates,
         nondifferentiabilities: nondifferentiabilities(&pieces),
-        kink: kink_met(&lineariser, tape, &parameters(quantities), &before_events).or(kink),
+        kink: kink_met(&lineariser, tape, &parameters(quantities), &before_events)
+            .or_else(|| kink_at_the_end(&lineariser, tape, &parameters(quantities), &moved(&end)))
+            .or(kink),
         simulation,
     })
 }
@@ -179,8 +181,12 @@ fn kink_met(
 /// The states that quantities move before a piece, if it is an event.
 fn moved_before(tape: &Tape, event: usize, s: &DMatrix<f64>) -> Option<Moved> {
     let piece = tape.pieces.get(event)?;
-    let states = (0..s.nrows()).filter(|row| s.row(*row).amax() > 0.0);
-    matches!(piece, Piece::Event { .. }).then(|| Moved { event, states: states.collect() })
+    matches!(piece, Piece::Event { .. }).then(|| Moved { event, states: moved(s) })
+}
+
+/// The states that quantities move.
+fn moved(s: &DMatrix<f64>) -> Vec<usize> {
+    (0..s.nrows()).filter(|row| s.row(*row).amax() > 0.0).collect()
 }
 
 /// Those that are parameters.

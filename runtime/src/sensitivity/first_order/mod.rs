@@ -76,7 +76,7 @@ fn end_shift(lineariser: &Lineariser, tape: &Tape) -> DMatrix<f64> {
     let Some(last) = last_instant(tape) else {
         return DMatrix::zeros(lineariser.system.layout.x, lineariser.system.layout.p);
     };
-    lineariser.at_instant(tape, &last).rate * lineariser.clock(lineariser.system.interval[1])
+    lineariser.at_instant(tape, &last).rate * lineariser.ends_by.row(1)
 }
 
 /// The derivative in each direction.

@@ -24,6 +24,10 @@ const APPROACHES: f64 = 0.7;
 const OFF: f64 = 1e-8;
 const LEAST_OF_UNIT: f64 = 1e-3;
 
+/// What takes so many times as many steps, such as a jump that happens again and again, is another
+/// trajectory.
+const MOST_TIMES: usize = 100;
+
 /// Below and above each quantity; nothing where a side has no trajectory to the end, infinite where
 /// the objective jumps.
 pub fn one_sided(
@@ -35,6 +39,8 @@ pub fn one_sided(
     // It is the same for all quantities and both sides.
     let first = quantities.first();
     let here = first.and_then(|quantity| Near::new(system, controls, options, quantity));
+    let most = here.as_ref().map_or(0, |it| MOST_TIMES * (1 + it.steps));
+    let options = &Options { max_steps: options.max_steps.min(most), ..options.clone() };
     let side = |quantity: &Quantity, sign: f64| {
         let here = here.as_ref()?;
         let distance = sign * DISTANCE * value(system, controls, quantity).abs().max(1.0);
@@ -69,6 +75,8 @@ struct Near {
     derivative: f64,
     /// The size of what the objective is made of, to first order.
     terms: f64,
+    /// Of its simulation.
+    steps: usize,
 }
 
 impl Near {
@@ -91,7 +99,8 @@ impl Near {
         let sizes = states.map(|(value, state)| value.abs().max(LEAST_OF_UNIT * state.unit));
         let terms = objective.by_end.iter().zip(sizes).map(|(by, size)| by.abs() * size);
         let terms = objective.value.abs() + terms.sum::<f64>();
-        Some(Near { objective: objective.value, derivative, terms })
+        let steps = simulation.counts.steps + simulation.counts.rejected;
+        Some(Near { objective: objective.value, derivative, terms, steps })
     }
 }
 

@@ -130,10 +130,19 @@ impl Timing {
     }
 
     /// A time that is a fixed part of the interval.
-    pub fn of_clock(lineariser: &Lineariser, regime: &Regime, time: f64) -> Self {
+    fn of_clock(lineariser: &Lineariser, regime: &Regime, time: f64) -> Self {
+        Timing::by_parameters(lineariser, regime, &lineariser.clock(time))
+    }
+
+    /// The last time, also where it is the first.
+    pub fn of_end(lineariser: &Lineariser, regime: &Regime) -> Self {
+        Timing::by_parameters(lineariser, regime, &lineariser.ends_by.row(1).into_owned())
+    }
+
+    fn by_parameters(lineariser: &Lineariser, regime: &Regime, by: &RowDVector<f64>) -> Self {
         let layout = lineariser.layout(regime);
         let mut timing = Timing::fixed(lineariser, regime);
-        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(&lineariser.clock(time));
+        timing.by_inputs.columns_mut(layout.u, layout.p).copy_from(by);
         timing
     }
 

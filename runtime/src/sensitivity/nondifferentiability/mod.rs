@@ -1,8 +1,8 @@
 //! Where a trajectory has no derivative, or is so near such a place that one cannot tell.
 //!
 //! Five ways: it touches a surface without crossing it, it meets two surfaces at one time, it meets
-//! a surface when the controls change or when it starts, it meets one at the end, it slides on one
-//! that can hold it no harder. All are suspicions;
+//! a surface when the controls change, when it starts or right after a jump there, it meets one at
+//! the end, it slides on one that can hold it no harder. All are suspicions;
 //! [`one_sided()`](super::first_order::one_sided::one_sided()) decides.
 
 pub(crate) mod kink;
@@ -31,11 +31,11 @@ pub enum NondifferentiabilityKind {
     Grazing,
     /// Two surfaces are met at one time.
     Corner,
-    /// A surface is met when the controls change, or at the start.
+    /// A surface is met when the controls change, at the start, or right after a jump there.
     Coincident,
     /// A surface is met at the end.
     End,
-    /// A surface holds the state as hard as it can, and goes on to hold it.
+    /// A surface holds the state as hard as it can, and goes on to hold it or has just begun to.
     Limit,
 }
 
@@ -61,7 +61,11 @@ pub(crate) fn nondifferentiabilities(pieces: &LinearTape) -> Vec<Nondifferentiab
                 watch.limits(start, &mut found);
                 found.extend(touches.iter().filter_map(touched));
             }
-            Piece::Event { .. } => watch.event(at, &mut found),
+            Piece::Event { after, .. } => {
+                watch.event(at, &mut found);
+                // A hold that ends where it begins has no step.
+                watch.limits(after, &mut found);
+            }
         }
     }
     if let Some(last) = tape.pieces.last() {
@@ -140,8 +144,8 @@ impl Watch<'_> {
         (0..modes.len()).filter(|&i| self.is_beside(at, i))
     }
 
-    /// Surfaces on which a step begins with selectors at the end of their interval: a little more
-    /// force would move the state. Each is noted where that begins.
+    /// Surfaces that hold the state at an instant with selectors at the end of their interval: a
+    /// little more force would move it. Each is noted where that begins.
     fn limits(&self, start: &Instant, found: &mut Vec<Nondifferentiability>) {
         let kind = NondifferentiabilityKind::Limit;
         let modes = &self.tape.regimes[start.regime].modes;
@@ -159,6 +163,9 @@ impl Watch<'_> {
         let Piece::Event { cause, before, changes, .. } = &self.tape.pieces[at] else { return };
         let time = before.time;
         let mut note = |kind, surface| found.push(Nondifferentiability { kind, surface, time });
+        for surface in changes.iter().filter_map(|it| self.jumped_onto(it)) {
+            note(NondifferentiabilityKind::Coincident, surface);
+        }
         let distances = self.distances(before);
         let met: Vec<usize> = self.beside(before).filter(|&i| distances.touches(i)).collect();
         match *cause {
@@ -192,6 +199,23 @@ impl Watch<'_> {
             }
             Cause::Leaves(_) | Cause::CrossesKink(_) => {}
         }
+    }
+
+    /// The surface of a jump that moves the state with respect to it, but not off it, while the
+    /// state goes on through it. A little less, and it comes to the surface again.
+    fn jumped_onto(&self, change: &Change) -> Option<usize> {
+        let EventKind::Jump(jump) = change.kind else { return None };
+        let system = self.lineariser.system;
+        let (of, surface) = (&system.jumps[jump], change.surface);
+        let distances = self.distances(&change.after);
+        let onward = if of.is_falling { -distances.rate[surface] } else { distances.rate[surface] };
+        let goes_on = onward > 0.0 && !distances.is_tangent(surface);
+        let entries = &system.switching.jacobian_pattern().entries;
+        let reads = |row: u32, input: u32| {
+            row as usize == surface && of.resets.iter().any(|state| input as usize == 1 + state)
+        };
+        let is_moved = entries.iter().any(|&(row, input)| reads(row, input));
+        (goes_on && is_moved && distances.touches(surface)).then_some(surface)
     }
 
     /// Whether the event before or after is at the same time.

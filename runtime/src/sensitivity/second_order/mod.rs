@@ -202,8 +202,7 @@ impl<'t> Second<'t> {
         // The cause is of no matter: nothing but the clock moves the end.
         let event = EventOnTape { cause: Cause::Repels, before: &last, after: &last, changes: &[] };
         let regime = self.regime(&last);
-        let end = self.lineariser.system.interval[1];
-        let timing = Timing::of_clock(self.lineariser, regime, end);
+        let timing = Timing::of_end(self.lineariser, regime);
         let tau = timing.of(&self.s, &self.directions.inputs(regime));
         let second = SecondOrderEvent {
             lineariser: self.lineariser,

@@ -5,6 +5,7 @@
 
 use super::Field;
 use crate::simulate::tuning::field::ON_SURFACE;
+use crate::simulate::tuning::modes::TIE;
 
 impl Field<'_> {
     /// -1 below a kink, 1 above.
@@ -27,33 +28,45 @@ impl Field<'_> {
                 || kinks.psi[kink].abs() <= ON_SURFACE * kinks.noise(kink, x)
         };
         let here: Vec<usize> = (0..kinks.psi.len()).filter(|kink| is_on(self, *kink)).collect();
-        let bends = |kink: &usize| {
-            let mut sides = [-1.0, 1.0].map(|side| {
-                let mut selectors = self.selectors.clone();
-                selectors[first + kink] = side;
-                self.normals_with(t, x, &selectors)
-            });
-            let [below, above] = &mut sides;
-            surfaces.iter().any(|&i| {
-                below.by_time[i] != above.by_time[i]
-                    || below.by_state.row(i) != above.by_state.row(i)
-            })
-        };
-        here.into_iter().filter(bends).collect()
+        here.into_iter().filter(|kink| self.bends_at(first + kink, (t, x), surfaces)).collect()
     }
 
-    /// Finds the sides anew.
-    pub fn find_sides_of_kinks(&mut self, t: f64, x: &[f64]) {
+    /// Whether functions of some surfaces that a point is on bend at others of them.
+    pub fn bend_each_other(&mut self, t: f64, x: &[f64], surfaces: &[usize]) -> bool {
+        surfaces.len() > 1 && surfaces.iter().any(|&at| self.bends_at(at, (t, x), surfaces))
+    }
+
+    /// Whether functions of surfaces have other slopes on both sides of what has this selector.
+    pub fn bends_at(&mut self, place: usize, (t, x): (f64, &[f64]), surfaces: &[usize]) -> bool {
+        let [below, above] = [-1.0, 1.0].map(|side| {
+            let mut selectors = self.selectors.clone();
+            selectors[place] = side;
+            self.normals_with(t, x, &selectors)
+        });
+        let differs = |&i: &usize| {
+            below.by_time[i] != above.by_time[i] || below.by_state.row(i) != above.by_state.row(i)
+        };
+        surfaces.iter().any(differs)
+    }
+
+    /// Finds the sides anew; the kinks that a point is on and to which its rate is tangent.
+    pub fn find_sides_of_kinks(&mut self, t: f64, x: &[f64]) -> Vec<usize> {
         let first = self.modes.len();
+        let mut tangent = Vec::new();
         // Each pass is right for one more kink inside others.
         for _ in 0..self.system.kinks.outputs() {
             let kinks = self.kinks(t, x);
             let rate = self.rate(t, x);
+            tangent.clear();
             for kink in 0..kinks.psi.len() {
                 let is_off = kinks.psi[kink].abs() > ON_SURFACE * kinks.noise(kink, x);
                 let ahead = if is_off { kinks.psi[kink] } else { kinks.rate(kink, &rate) };
+                if !is_off && ahead.abs() <= TIE * kinks.speed(kink, &rate) {
+                    tangent.push(kink);
+                }
                 self.selectors[first + kink] = if ahead > 0.0 { 1.0 } else { -1.0 };
             }
         }
+        tangent
     }
 }

@@ -38,6 +38,8 @@ pub(crate) struct Field<'a> {
     pub departure: Vec<f64>,
     /// The longest explicit step that moving balls allow at the beginning of the next one.
     pub stable: f64,
+    /// Whether the right side reads the selector of each surface.
+    pub acts: Vec<bool>,
     /// States that stand still.
     pub held: Vec<usize>,
     /// How far from 0 the function of a surface may be on which the state rests.
@@ -75,6 +77,7 @@ impl<'a> Field<'a> {
             direction: vec![0.0; surfaces],
             departure: vec![f64::NAN; surfaces],
             stable: f64::INFINITY,
+            acts: acting(system),
             held: Vec::new(),
             slack: vec![0.0; surfaces],
             is_blind: false,
@@ -176,6 +179,12 @@ impl<'a> Field<'a> {
         column_values(&values)
     }
 
+    /// The same with the sides of all surfaces and kinks that the point itself is on.
+    pub fn psi_on_its_sides(&mut self, t: f64, x: &[f64]) -> Vec<f64> {
+        self.set_point(t, x, None);
+        self.system.switching_at(&mut column_values(&self.point), &self.parameters)
+    }
+
     /// The state after a jump.
     pub fn reset(&mut self, jump: usize, t: f64, x: &[f64]) -> Vec<f64> {
         self.set_point(t, x, None);
@@ -226,6 +235,18 @@ impl<'a> Field<'a> {
         self.evaluations = before.1;
         std::mem::replace(&mut self.selectors, before.0)
     }
+}
+
+/// Whether the right side reads the selector of each surface.
+fn acting(system: &System) -> Vec<bool> {
+    let selectors = system.surface_selectors();
+    let mut acts = vec![false; system.surfaces.len()];
+    for &(_, input) in &system.flow.jacobian_pattern().entries {
+        if let Some(surface) = selectors.clone().position(|it| it == input as usize) {
+            acts[surface] = true;
+        }
+    }
+    acts
 }
 
 fn read(table: &Columns, values: &mut [f64]) {

@@ -26,6 +26,11 @@ impl Normals {
         along + self.by_time[surface]
     }
 
+    /// The size of the terms of `psi'` along a rate.
+    pub fn speed(&self, surface: usize, rate: &[f64]) -> f64 {
+        self.size(surface, rate) + self.by_time[surface].abs()
+    }
+
     /// What rounding may make of `psi = 0`.
     pub fn noise(&self, surface: usize, x: &[f64]) -> f64 {
         self.floors[surface] + self.rounding(surface, x)

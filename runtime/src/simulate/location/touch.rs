@@ -9,6 +9,7 @@ use super::{Condition, conditions};
 use crate::simulate::field::Field;
 use crate::simulate::steps::Step;
 use crate::simulate::tape::{Cause, Touch};
+use crate::simulate::tuning::field::ON_SURFACE;
 use crate::simulate::tuning::touch::{MOST_PARTS, TOUCHING};
 
 /// What is touched before a part of a step, each once; leaves the selectors as they are, so that a
@@ -21,15 +22,45 @@ pub(crate) fn touches(field: &mut Field, step: &Step, until: f64) -> Vec<Touch> 
             continue;
         }
         let limit = limit(field, step, until, condition);
-        let tube = field.lend_tube();
-        let mut signal = Signal { field, step, condition, tube };
-        let place = signal.touched(until, limit);
-        signal.field.tube = Some(signal.tube);
+        let place = look(field, step, condition, |signal| signal.touched(until, limit));
         let time = |theta: f64| step.t + theta * step.h;
         found.extend(place.map(|theta| Touch { of: Cause::from(condition), time: time(theta) }));
     }
     field.selectors = selectors;
     found
+}
+
+/// Where before a part of a step a surface is touched that the state is beside, to rounding.
+pub(crate) fn touched_exactly(
+    field: &mut Field,
+    step: &Step,
+    until: f64,
+    surface: usize,
+) -> Option<f64> {
+    let condition = Condition::Reaches(surface);
+    if look(field, step, condition, |signal| signal.clearly_holds(until)) {
+        return None;
+    }
+    let mut noise = |theta: f64| {
+        let state = step.at(theta);
+        field.normals(step.t + theta * step.h, &state).noise(surface, &state)
+    };
+    let limit = ON_SURFACE * noise(0.0).max(noise(until));
+    look(field, step, condition, |signal| signal.touched(until, limit))
+}
+
+/// Looks along a step with the memory that the field lends.
+fn look<'a, R>(
+    field: &mut Field<'a>,
+    step: &Step,
+    condition: Condition,
+    look: impl FnOnce(&mut Signal<'_, 'a>) -> R,
+) -> R {
+    let tube = field.lend_tube();
+    let mut signal = Signal { field, step, condition, tube };
+    let seen = look(&mut signal);
+    signal.field.tube = Some(signal.tube);
+    seen
 }
 
 /// What cannot be told from 0, for the sizes of the terms of a condition.

@@ -1,4 +1,5 @@
-//! Points on kinks of the functions of surfaces: `psi = x + max(0, y)` where `y` is 0.
+//! Points on kinks of the functions of surfaces: `psi = x + max(0, y)` where `y` is 0, which may be
+//! a surface itself.
 //!
 //! What is to come depends on the slopes behind the kink, on the side to which the motion leads. So
 //! each choice is judged by the slopes on its own side.
@@ -10,7 +11,7 @@ impl Corner<'_, '_> {
     /// Takes the slopes of the surfaces on the sides of their kinks to which a rate leads.
     pub(super) fn go_behind_bends(&mut self, rate: &[f64], selectors: &[f64]) {
         let first = self.field.modes.len();
-        if self.bends.is_empty() {
+        if self.bends.is_empty() && !self.turns {
             return;
         }
         let (kinks, mut selectors) = (self.field.kinks(self.t, self.x), selectors.to_vec());
@@ -24,8 +25,8 @@ impl Corner<'_, '_> {
     /// Whether all selectors lead to the same sides of the kinks, so that one linear problem is all
     /// there is.
     pub(super) fn is_one_piece(&mut self) -> bool {
-        if self.bends.is_empty() {
-            return true;
+        if self.turns || self.bends.is_empty() {
+            return !self.turns;
         }
         let kinks = self.field.kinks(self.t, self.x);
         let mut selectors = self.field.selectors.clone();

@@ -5,21 +5,8 @@
 use super::{Choice, Corner, Next};
 use crate::simulate::mode::Mode;
 use crate::simulate::steps::Step;
-use crate::simulate::system::System;
 use crate::simulate::tuning::field::ON_SURFACE;
 use crate::simulate::tuning::modes::{AHEAD, TIE};
-
-/// Whether the right side reads the selector of each surface.
-pub(super) fn acting(system: &System) -> Vec<bool> {
-    let selectors = system.surface_selectors();
-    let mut acts = vec![false; system.surfaces.len()];
-    for &(_, input) in &system.flow.jacobian_pattern().entries {
-        if let Some(surface) = selectors.clone().position(|it| it == input as usize) {
-            acts[surface] = true;
-        }
-    }
-    acts
-}
 
 impl Corner<'_, '_> {
     /// Where idle surfaces are left behind, once the others have chosen.
@@ -28,9 +15,9 @@ impl Corner<'_, '_> {
             return Vec::new();
         }
         self.bends = self.field.bends_here(self.t, self.x, idle);
-        self.rates(&choice.s);
-        let rate = self.rate(&choice.s);
         let later = self.a_moment_later(choice, idle);
+        let rate = self.rate(&choice.s);
+        self.go_on_beside(choice, idle.iter().zip(&later), rate.as_slice());
         let next = |(&surface, later): (&usize, Option<f64>)| {
             let now = self.normals.rate(surface, rate.as_slice());
             let slopes = self.normals.by_state.row(surface);
@@ -51,20 +38,32 @@ impl Corner<'_, '_> {
         idle.iter().zip(later).map(next).collect()
     }
 
+    /// Takes the slopes of the surfaces on the sides of each other, and of their kinks, to which
+    /// the motion leads.
+    fn go_on_beside<'i>(
+        &mut self,
+        choice: &Choice,
+        later: impl Iterator<Item = (&'i usize, &'i Option<f64>)>,
+        rate: &[f64],
+    ) {
+        let mut selectors = self.field.selectors.clone();
+        self.surfaces.iter().zip(choice.s.iter()).for_each(|(&i, s)| selectors[i] = *s);
+        later.for_each(|(&i, psi)| selectors[i] = psi.map_or(selectors[i], f64::signum));
+        self.turns = true;
+        self.go_behind_bends(rate, &selectors);
+    }
+
     /// The functions of surfaces after a short step, unless it ends on them.
     fn a_moment_later(&mut self, choice: &Choice, surfaces: &[usize]) -> Vec<Option<f64>> {
         let [first, last] = self.field.system.interval;
         let h = (AHEAD * (last - first)).min(last - self.t);
         let (t, x) = (self.t, self.x);
-        let of_end = self.with_modes_of(choice, |field| {
+        let (psi, normals, end) = self.with_modes_of(choice, |field| {
             let end = Step::take(field, t, x, h).end;
-            (field.normals(t + h, &end), end)
+            (field.psi_on_its_sides(t + h, &end), field.normals(t + h, &end), end)
         });
-        let (normals, end) = of_end;
-        let off = |&i: &usize| {
-            let psi = normals.psi[i];
-            (psi.abs() > ON_SURFACE * normals.noise(i, &end)).then_some(psi)
-        };
+        let off =
+            |&i: &usize| (psi[i].abs() > ON_SURFACE * normals.noise(i, &end)).then_some(psi[i]);
         surfaces.iter().map(off).collect()
     }
 }

@@ -34,6 +34,8 @@ struct Corner<'f, 'a> {
     normals: Normals,
     /// The kinks of the functions of the surfaces that the point is on.
     bends: Vec<usize>,
+    /// Whether the functions of the surfaces bend at others of them: `abs(x) - y` at `x`.
+    turns: bool,
     /// Where the balls stand among the surfaces.
     balls: Vec<Range<usize>>,
 }
@@ -77,13 +79,13 @@ pub(crate) fn decide(
     if surfaces.is_empty() {
         return Ok(Vec::new());
     }
-    let acts = idle::acting(field.system);
-    let (acting, idle): (Vec<usize>, Vec<usize>) = surfaces.iter().partition(|&&i| acts[i]);
+    let (acting, idle) = split(field, (t, x), surfaces);
     let normals = field.normals(t, x);
     field.follow_directions(t, x);
     let balls = blocks(&field.system.balls, &acting);
     let bends = field.bends_here(t, x, &acting);
-    let mut corner = Corner { field, t, x, surfaces: &acting, normals, bends, balls };
+    let turns = field.bend_each_other(t, x, &acting);
+    let mut corner = Corner { field, t, x, surfaces: &acting, normals, bends, turns, balls };
     let choice = corner.choose()?;
     let beside = corner.beside(&choice, &idle);
     choice.note_directions(field, &acting);
@@ -91,6 +93,16 @@ pub(crate) fn decide(
     let mut all: Vec<Next> = acting.iter().enumerate().map(next).chain(beside).collect();
     all.sort_by_key(|it| it.surface);
     Ok(all)
+}
+
+/// The surfaces that the motion depends on, or that those bend at, and the others.
+fn split(field: &mut Field, (t, x): (f64, &[f64]), surfaces: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let (acting, idle): (Vec<usize>, Vec<usize>) = surfaces.iter().partition(|&&i| field.acts[i]);
+    let mut turns = |i: &usize| field.bends_at(*i, (t, x), &acting);
+    let (turning, idle): (Vec<usize>, Vec<usize>) = idle.iter().partition(|i| turns(i));
+    let mut acting = [acting, turning].concat();
+    acting.sort_unstable();
+    (acting, idle)
 }
 
 fn mode(side: i8) -> Mode {

@@ -127,7 +127,9 @@ impl Run<'_> {
         if self.options.integrator == Integrator::Automatic && self.field.moving().is_empty() {
             self.pace.choose(step, self.options.rtol);
         }
-        if let Some(found) = self.first_event(step)? {
+        let found = self.first_event(step)?;
+        self.pass_by(step, found.as_ref().map_or(1.0, |it| it.h / step.h))?;
+        if let Some(found) = found {
             self.go(step, [step.t + found.h, found.h], &found.state);
             if let Condition::Reaches(surface) = found.condition
                 && found.is_jump

@@ -118,7 +118,10 @@ impl Run<'_> {
             surfaces.retain(|&surface| !self.stays_beside(surface));
             let next = decide(&mut self.field, self.t, &self.x, &surfaces)?;
             let crossed = next.iter().filter(|it| !it.rests);
-            let jump = crossed.clone().find_map(|it| self.jump_at(it.surface, it.mode));
+            let due = crossed.clone().filter_map(|it| self.jump_at(it.surface, it.mode));
+            let due: Vec<usize> = due.collect();
+            self.note_orders(&due);
+            let jump = due.first().copied();
             if jump.is_none() && self.rest_again(&next) {
                 surfaces = self.surfaces_here();
                 continue;
@@ -200,7 +203,7 @@ impl Run<'_> {
         let [back, onward] = if of.is_falling { sides } else { [sides[1], sides[0]] };
         self.field.set_mode(surface, back);
         self.find_sides();
-        self.field.find_sides_of_kinks(self.t, &self.x);
+        self.find_sides_of_kinks();
         self.end_rests(&before);
         if self.goes_through(surface, onward) {
             self.field.set_mode(surface, onward);
@@ -250,23 +253,6 @@ impl Run<'_> {
             let (rate, _) = self.field.with_selectors(self.t, &self.x, &selectors);
             onward.side() * normals.rate(surface, &rate) > CLEAR * normals.rounding(surface, &rate)
         })
-    }
-
-    /// Gives every surface that the state is not on the side of the state, whose functions are
-    /// known once the sides of their kinks are.
-    pub fn find_sides(&mut self) {
-        self.field.find_sides_of_kinks(self.t, &self.x);
-        self.field.find_rounding(self.t, &self.x);
-        let normals = self.field.normals(self.t, &self.x);
-        for i in 0..self.field.modes.len() {
-            let is_off = normals.psi[i].abs() > ON_SURFACE * normals.noise(i, &self.x);
-            if let Some(ball) = self.field.ball_of(i).filter(|_| is_off) {
-                self.field.set_moving(ball);
-            } else if is_off && self.field.modes[i] != Mode::Held {
-                let mode = if normals.psi[i] > 0.0 { Mode::Above } else { Mode::Below };
-                self.field.set_mode(i, mode);
-            }
-        }
     }
 
     /// Changes a mode and notes the event.

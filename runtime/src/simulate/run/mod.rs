@@ -5,10 +5,13 @@ mod arrival;
 mod between;
 mod events;
 mod holding;
+mod order;
 mod pile;
 mod record;
 mod recorder;
+mod sides;
 mod staying;
+mod touching;
 mod zeno;
 
 use super::controls::Controls;
@@ -120,7 +123,7 @@ impl<'a> Run<'a> {
     fn begin(&mut self) -> Result<(), Status> {
         self.field.find_rounding(self.t, &self.x);
         self.find_sides();
-        self.field.find_sides_of_kinks(self.t, &self.x);
+        self.find_sides_of_kinks();
         self.finite_here()?;
         self.stop(Cause::Start, |run| {
             let surfaces = run.surfaces_here();
@@ -134,7 +137,7 @@ impl<'a> Run<'a> {
     fn change_controls(&mut self, time: f64) -> Result<(), Status> {
         self.stop(Cause::Controls, |run| {
             run.field.use_controls_of(time);
-            run.field.find_sides_of_kinks(run.t, &run.x);
+            run.find_sides_of_kinks();
             let surfaces = run.surfaces_here();
             run.settle(surfaces)
         })
@@ -154,7 +157,7 @@ impl<'a> Run<'a> {
             self.field.find_least_sizes(self.t, &self.x);
         }
         if !matches!(cause, Cause::CrossesKink(_)) {
-            self.field.find_sides_of_kinks(self.t, &self.x);
+            self.find_sides_of_kinks();
         }
         self.tape.close(&mut self.field, self.t, &self.x);
         Ok(())
@@ -188,6 +191,7 @@ impl<'a> Run<'a> {
             time: self.record.time,
             states: self.record.states,
             events: self.record.events,
+            orders: self.record.orders,
             end_time: self.t,
             end: self.x,
             objective: objective.first().copied().filter(|_| is_complete),

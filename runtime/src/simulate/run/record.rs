@@ -1,12 +1,13 @@
 //! The trajectory while it is made: all steps, or the times asked for.
 
-use crate::simulate::result::{Event, Options};
+use crate::simulate::result::{Event, Options, Order};
 
 /// Times and states so far.
 pub(crate) struct Record {
     pub time: Vec<f64>,
     pub states: Vec<Vec<f64>>,
     pub events: Vec<Event>,
+    pub orders: Vec<Order>,
     /// The least and the greatest that each state has been.
     extremes: Vec<[f64; 2]>,
     wanted: Vec<f64>,
@@ -20,6 +21,7 @@ impl Record {
             time: Vec::new(),
             states: vec![Vec::new(); states],
             events: Vec::new(),
+            orders: Vec::new(),
             extremes: vec![[f64::INFINITY, f64::NEG_INFINITY]; states],
             wanted: options.times.clone(),
             past: 0,

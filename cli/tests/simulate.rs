@@ -439,6 +439,7 @@ fn jumps_whose_order_matters_are_told() {
     let told = "note: `a` and `b` jump together at t = 0.5, and lead elsewhere in the other order";
     assert!(stdout(&output).contains(told), "{}", stdout(&output));
     let document = json(&fdcc(&folder, &["simulate", "two.fdc", "--json"], ""));
-    let expected = serde_json::json!([{ "time": 0.5, "jumps": ["a", "b"] }]);
-    assert_eq!(document["orders"], expected);
+    let order = &document["orders"][0];
+    assert_eq!(order["jumps"], serde_json::json!(["a", "b"]));
+    assert!((number(&order["time"]) - 0.5).abs() < 1e-12, "{order}");
 }

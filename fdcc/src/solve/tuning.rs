@@ -55,7 +55,7 @@ pub(super) mod kinks {
     pub(crate) const EXACT: f64 = 1e-8;
     /// What is worse by more than this part of the objective is no better description of the same
     /// optimum.
-    pub(crate) const WORSE: f64 = 0.05;
+    pub(crate) const WORSE: f64 = 0.25;
 }
 
 pub(super) mod search {

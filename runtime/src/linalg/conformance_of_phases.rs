@@ -213,7 +213,6 @@ fn phases_are_solved_as_the_whole_and_their_inertia_is_known() {
         let mut factor = PhasedRiccati::new(&phases, matrices, &whole.fixed, &equality)
             .unwrap_or_else(|why| panic!("case {case}: {why}"));
         whole.check("phases", &mut factor, 1, &mut random);
-        whole.check_products(&phases, &mut random);
         let inertia =
             factor.factor(&whole.hessian_values, &whole.jacobian_values, &whole.sigma, &whole.d);
         both[usize::from(inertia == Inertia::Correct)] += 1;

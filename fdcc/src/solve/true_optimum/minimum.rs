@@ -76,15 +76,8 @@ impl Search<'_> {
         let of_minimum = others.map(|(other, _)| near - other).fold(0.0, f64::max);
         let loss = loss(&chain, &controls, (near, &controls_near));
         // A point of which the way down leads far away is no minimum.
-        let is_far = self.is_far(located, [&controls, &controls_near]);
+        let is_far = is_far(&ranges, [&controls, &controls_near]);
         Gain { of_minimum: of_minimum.max(if is_far { loss } else { 0.0 }), loss }
-    }
-
-    /// Whether a control is another one by a part of its range.
-    fn is_far(&self, located: &Located, [one, other]: [&[f64]; 2]) -> bool {
-        let ranges = ranges(&self.problem.controls, &located.outcome.phases);
-        let mut each = ranges.iter().zip(one.iter().zip(other));
-        each.any(|(range, (a, b))| (a - b).abs() > FAR * range.width)
     }
 }
 
@@ -97,6 +90,12 @@ impl Located {
         let least = if all.clone().all(|it| it.is_noise) { noise / GAIN } else { 0.0 };
         all.map(|it| it.scale).fold(least.max(f64::MIN_POSITIVE), f64::max)
     }
+}
+
+/// Whether a control is another one by a part of its range.
+pub(super) fn is_far(ranges: &[Range], [one, other]: [&[f64]; 2]) -> bool {
+    let mut each = ranges.iter().zip(one.iter().zip(other));
+    each.any(|(range, (a, b))| (a - b).abs() > FAR * range.width)
 }
 
 /// By how much the Hamiltonian is less at the minimum that is near, as far as that is curved: on a

@@ -2,7 +2,7 @@
 //! for them: what these were allowed knows nothing of the other side of a kink of the right side.
 
 use super::insertion::{Least, at_point, hamiltonian_at, least};
-use super::minimum::{controls_at, interpolation, samples};
+use super::minimum::{controls_at, interpolation, is_far, samples};
 use super::point::point_of;
 use super::range::ranges;
 use super::tuning::minimum::PARTS;
@@ -25,14 +25,16 @@ pub(crate) fn gain_on_kinks(model: &Model, problem: &Problem, outcome: &Outcome)
         let chain = at_point(model, &phase, &at)?;
         let value =
             |controls: &[f64]| match least(&chain, Some(controls), &|| ControlFlow::Continue(())) {
-                Least::Value(value, _) => Some(value),
+                Least::Value(value, controls) => Some((value, controls)),
                 _ => None,
             };
         let controls = controls_at(own, k, at.time);
         let here = hamiltonian_at(&chain, &controls);
-        let near = value(&controls).map_or(here, |it| it.min(here));
-        let others = samples(&ranges, &controls);
-        let least = others.iter().filter_map(|it| value(it)).min_by(f64::total_cmp)?;
+        // On a kink the way down may lead far away.
+        let near = value(&controls).filter(|it| !is_far(&ranges, [&controls, &it.1]));
+        let near = near.map_or(here, |it| it.0.min(here));
+        let others = samples(&ranges, &controls).into_iter().chain([controls]);
+        let least = others.filter_map(|it| Some(value(&it)?.0)).min_by(f64::total_cmp)?;
         Some(near - least)
     };
     PARTS.iter().filter_map(gain).fold(0.0, f64::max)

@@ -1,6 +1,6 @@
-//! What an interval of a chain sees of the vectors: `[x_k u_k y_k x_{k+1} | globals | rows]`.
+//! What an interval sees of the vectors of a chain: `[x_k u_k y_k x_{k+1} | globals | rows]`.
 
-use crate::linalg::structure::phases::PhaseStages;
+use crate::linalg::structure::stages::Stages;
 use std::ops::Range;
 
 /// Intervals of a batch.
@@ -10,80 +10,83 @@ pub(super) const BATCH: usize = 16;
 pub(super) type Numbers = [f64; BATCH];
 pub(super) const NOTHING: Numbers = [0.0; BATCH];
 
-/// Where the numbers that an interval of a chain sees are.
+/// Where the numbers that an interval sees are; nothing where there is no chain.
+#[derive(Clone, Copy)]
 pub(super) struct Sight {
-    pub(super) chain: PhaseStages,
+    pub(super) stages: Stages,
     /// `(x_k, u_k, y_k, x_{k+1})`
     window: usize,
 }
 
+const NO_STAGES: Stages = Stages {
+    intervals: 0,
+    states: 0,
+    controls: 0,
+    inner: 0,
+    globals: 0,
+    local_constraints: 0,
+    coupling_constraints: 0,
+};
+
 impl Sight {
-    pub(super) fn new(chain: PhaseStages) -> Self {
-        let window = chain.stages.variable_step() + chain.stages.states;
-        Sight { chain, window }
+    /// Without stages there is nothing to see.
+    pub(super) fn new(stages: Option<Stages>) -> Self {
+        let stages = stages.unwrap_or(NO_STAGES);
+        Sight { stages, window: stages.variable_step() + stages.states }
     }
 
     pub(super) fn first_row(&self) -> usize {
-        self.window + self.chain.globals.len()
+        self.window + self.stages.globals
     }
 
     pub(super) fn len(&self) -> usize {
-        self.first_row() + self.chain.stages.row_step()
+        self.first_row() + self.stages.row_step()
     }
 
     /// The place of a variable that is at `index` in interval 0 and moves by `step`.
     pub(super) fn variable(&self, index: usize, step: usize) -> Option<usize> {
-        let PhaseStages { stages, variables, globals, .. } = &self.chain;
-        if let Some(at) = globals.iter().position(|it| *it == index) {
-            return (step == 0).then_some(self.window + at);
+        let (stages, globals) = (&self.stages, self.stages.globals());
+        if globals.contains(&index) {
+            return (step == 0).then(|| self.window + index - globals.start);
         }
-        let place = index.checked_sub(variables.start).filter(|it| *it < self.window);
-        place.filter(|_| step == stages.variable_step() || stages.intervals == 1)
+        let moves_along = step == stages.variable_step() || stages.intervals == 1;
+        (moves_along && index < self.window).then_some(index)
     }
 
-    /// That of a row.
     pub(super) fn row(&self, index: usize, step: usize) -> Option<usize> {
-        let PhaseStages { stages, rows, .. } = &self.chain;
-        let place = index.checked_sub(rows.start).filter(|it| *it < stages.row_step());
-        let place = place.filter(|_| step == stages.row_step() || stages.intervals == 1);
-        place.map(|it| self.first_row() + it)
+        let moves_along = step == self.stages.row_step() || self.stages.intervals == 1;
+        (moves_along && index < self.stages.row_step()).then(|| self.first_row() + index)
     }
 
-    pub(super) fn batches(&self) -> impl Iterator<Item = Range<usize>> + use<> {
-        let all = self.chain.stages.intervals;
+    pub(super) fn batches(self) -> impl Iterator<Item = Range<usize>> {
+        let all = self.stages.intervals;
         (0..all).step_by(BATCH).map(move |first| first..(first + BATCH).min(all))
     }
 
     #[inline(always)]
     pub(super) fn see_variables(&self, batch: &Range<usize>, v: &[f64], seen: &mut [Numbers]) {
-        let PhaseStages { stages, variables, globals, .. } = &self.chain;
-        let own = &v[variables.start..variables.end];
-        see(batch, own, stages.variable_step(), &mut seen[..self.window]);
-        for (place, global) in seen[self.window..].iter_mut().zip(globals) {
-            *place = [v[*global]; BATCH];
+        see(batch, v, self.stages.variable_step(), &mut seen[..self.window]);
+        for (place, value) in seen[self.window..].iter_mut().zip(&v[self.stages.globals()]) {
+            *place = [*value; BATCH];
         }
     }
 
     #[inline(always)]
     pub(super) fn see_rows(&self, batch: &Range<usize>, w: &[f64], seen: &mut [Numbers]) {
-        let own = &w[self.chain.rows.start..];
-        see(batch, own, self.chain.stages.row_step(), &mut seen[self.first_row()..]);
+        see(batch, w, self.stages.row_step(), &mut seen[self.first_row()..]);
     }
 
     #[inline(always)]
     pub(super) fn tell_variables(&self, batch: &Range<usize>, found: &[Numbers], a: &mut [f64]) {
-        let PhaseStages { stages, variables, globals, .. } = &self.chain;
-        let own = &mut a[variables.start..variables.end];
-        tell(batch, &found[..self.window], own, stages.variable_step());
-        for (global, value) in globals.iter().zip(&found[self.window..]) {
-            a[*global] += value[..batch.len()].iter().sum::<f64>();
+        tell(batch, &found[..self.window], a, self.stages.variable_step());
+        for (sum, value) in a[self.stages.globals()].iter_mut().zip(&found[self.window..]) {
+            *sum += value[..batch.len()].iter().sum::<f64>();
         }
     }
 
     #[inline(always)]
     pub(super) fn tell_rows(&self, batch: &Range<usize>, found: &[Numbers], b: &mut [f64]) {
-        let own = &mut b[self.chain.rows.start..];
-        tell(batch, &found[self.first_row()..], own, self.chain.stages.row_step());
+        tell(batch, &found[self.first_row()..], b, self.stages.row_step());
     }
 }
 

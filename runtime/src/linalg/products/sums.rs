@@ -1,20 +1,19 @@
-//! Sums over the values of a matrix, each a list of terms that is the same for all intervals of a
-//! chain.
+//! Sums over the values of a matrix, each a list of terms that is the same for all intervals.
 
 use super::sight::{BATCH, NOTHING, Numbers, Sight};
 use crate::linalg::dense::lanes::multiply_add;
 use crate::linalg::structure::triplets::{Family, Triplets};
 use std::ops::Range;
 
-/// Sums over the values of one matrix that belong to one chain.
+/// Sums over the values of one matrix.
+#[derive(Default)]
 pub(super) struct Sums {
     terms: Vec<Term>,
     /// Behind the last term of each sum.
     ends: Vec<u32>,
+    /// Entries that belong to no interval, each with its place among the values.
+    others: Vec<(Family, usize)>,
 }
-
-/// Entries of a matrix, each family with its place among the values.
-pub(super) struct Entries(Vec<(Family, usize)>);
 
 /// `values[source + k]` times a number that interval `k` sees.
 #[derive(Clone, Copy)]
@@ -23,57 +22,35 @@ struct Term {
     seen: u32,
 }
 
-impl Entries {
-    pub(super) fn new(matrix: &Triplets) -> Self {
-        let mut source = 0;
-        let with_place = |family: &Family| {
-            source += family.count;
-            (*family, source - family.count)
-        };
-        Entries(matrix.families.iter().map(with_place).collect())
-    }
-
-    /// Takes out those that belong to the intervals of a chain; `places` are what they connect
-    /// there.
-    pub(super) fn sums(
-        &mut self,
-        sight: &Sight,
+impl Sums {
+    pub(super) fn new(
+        sight: Sight,
+        matrix: &Triplets,
         places: impl Fn(&Family) -> Option<[usize; 2]>,
-    ) -> Sums {
+    ) -> Self {
+        let (mut sums, mut source) = (Sums::default(), 0);
         // Each with its sum; as many as there may be.
-        let mut terms: Vec<(usize, Term)> = Vec::with_capacity(2 * self.0.len());
-        self.0.retain(|(family, source)| {
-            let is_whole = family.count == sight.chain.stages.intervals;
-            let Some([a, b]) = places(family).filter(|_| is_whole) else { return true };
-            let term = |seen: usize| Term { source: *source as u32, seen: seen as u32 };
-            terms.push((a, term(b)));
-            if a != b {
-                terms.push((b, term(a)));
+        let mut terms: Vec<(usize, Term)> = Vec::with_capacity(2 * matrix.families.len());
+        for family in &matrix.families {
+            match places(family).filter(|_| family.count == sight.stages.intervals) {
+                Some([a, b]) => {
+                    terms.push((a, Term { source, seen: b as u32 }));
+                    if a != b {
+                        terms.push((b, Term { source, seen: a as u32 }));
+                    }
+                }
+                None => sums.others.push((*family, source as usize)),
             }
-            false
-        });
+            source += family.count as u32;
+        }
         // Those of a sum stay in their order.
         terms.sort_by_key(|(sum, _)| *sum);
         let end = |sum: usize| terms.partition_point(|it| it.0 <= sum) as u32;
-        let ends = (0..sight.len()).map(end).collect();
-        Sums { ends, terms: terms.into_iter().map(|(_, term)| term).collect() }
+        sums.ends = (0..sight.len()).map(end).collect();
+        sums.terms = terms.into_iter().map(|(_, term)| term).collect();
+        sums
     }
 
-    /// Calls `action(value, row, column)` for every entry that is left.
-    pub(super) fn each(&self, values: &[f64], mut action: impl FnMut(f64, usize, usize)) {
-        for (family, source) in &self.0 {
-            for (k, value) in values[*source..][..family.count].iter().enumerate() {
-                action(
-                    *value,
-                    family.row + k * family.row_step,
-                    family.column + k * family.column_step,
-                );
-            }
-        }
-    }
-}
-
-impl Sums {
     /// Adds the terms of the values of a batch of intervals to the first sums.
     #[inline(always)]
     pub(super) fn add<const FUSED: bool>(
@@ -100,6 +77,19 @@ impl Sums {
                 }
             }
             (*found, first) = (sum, *end as usize);
+        }
+    }
+
+    /// Calls `action(value, row, column)` for every entry that belongs to no interval.
+    pub(super) fn each_other(&self, values: &[f64], mut action: impl FnMut(f64, usize, usize)) {
+        for (family, source) in &self.others {
+            for (k, value) in values[*source..][..family.count].iter().enumerate() {
+                action(
+                    *value,
+                    family.row + k * family.row_step,
+                    family.column + k * family.column_step,
+                );
+            }
         }
     }
 }

@@ -17,13 +17,6 @@ pub struct PhaseStages {
 }
 
 impl PhaseStages {
-    /// A chain that is all there is.
-    pub(crate) fn alone(stages: Stages) -> Self {
-        let globals = stages.globals();
-        let (variables, rows) = (0..globals.start, 0..stages.rows());
-        PhaseStages { stages, variables, globals: globals.collect(), rows }
-    }
-
     /// What one number per variable of the whole is for the phase.
     pub(crate) fn own(&self, of: &[f64]) -> Vec<f64> {
         let globals = self.globals.iter().map(|place| of[*place]);

@@ -2,7 +2,6 @@
 
 use super::barrier::Terms;
 use super::formulation::Formulation;
-use super::kkt::chains;
 use super::vectors::{are_finite, largest, sum_of_sizes};
 use crate::linalg::{Products, Triplets};
 use crate::nlp::{Counts, Derivatives, Nlp};
@@ -111,7 +110,7 @@ pub(super) struct Slopes {
 
 impl Slopes {
     pub(super) fn new(nlp: &dyn Nlp, formulation: &Formulation) -> Self {
-        let products = Products::new(chains(nlp), &Triplets::default(), nlp.jacobian_structure());
+        let products = Products::new(nlp.stages(), &Triplets::default(), nlp.jacobian_structure());
         Slopes {
             derivatives: Derivatives::new(nlp),
             lagrangian: vec![0.0; formulation.len()],

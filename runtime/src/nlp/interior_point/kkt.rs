@@ -16,7 +16,7 @@ use super::iterate::{Iterate, SearchDirection, Slopes};
 use super::tuning::kkt::{HUGE, INACCURATE, MOST_REFINEMENTS, REFINED};
 use super::vectors::{are_finite, dot, largest};
 use crate::linalg::solvers::{Structure, more_robust, prepare};
-use crate::linalg::{Factor, Inertia, PhaseStages, Products};
+use crate::linalg::{Factor, Inertia, Products};
 use crate::nlp::{Derivatives, Nlp};
 use crate::problem::Linear;
 
@@ -67,7 +67,11 @@ impl Kkt {
         let zeros = |length: usize| vec![0.0; length];
         let size = formulation.variables + rows;
         Kkt {
-            products: Products::new(chains(nlp), nlp.hessian_structure(), nlp.jacobian_structure()),
+            products: Products::new(
+                nlp.stages(),
+                nlp.hessian_structure(),
+                nlp.jacobian_structure(),
+            ),
             factor,
             linear,
             sigma: zeros(formulation.len()),
@@ -304,11 +308,6 @@ impl Kkt {
             at.lambda.copy_from_slice(estimate);
         }
     }
-}
-
-/// The chains of stages that the NLP is made of.
-pub(super) fn chains(nlp: &dyn Nlp) -> Vec<PhaseStages> {
-    nlp.stages().map_or_else(|| nlp.phases(), |it| vec![PhaseStages::alone(it)])
 }
 
 /// Which rows are exact equalities: elastic ones are none, and need no special care.

@@ -18,6 +18,7 @@ pub(crate) fn gain_on_kinks(model: &Model, problem: &Problem, outcome: &Outcome)
     let own = &outcome.trajectory;
     let (phase, last) = (without_modes(model), own.time.len() - 2);
     let ranges = ranges(&problem.controls, slice::from_ref(outcome));
+    let is_limited = !limits(model).is_empty();
     let gain = |part: &f64| {
         let k = (part * last as f64) as usize;
         let states = model.states.len();
@@ -30,8 +31,10 @@ pub(crate) fn gain_on_kinks(model: &Model, problem: &Problem, outcome: &Outcome)
             };
         let controls = controls_at(own, k, at.time);
         let here = hamiltonian_at(&chain, &controls);
-        // On a kink the way down may lead far away.
-        let near = value(&controls).filter(|it| !is_far(&ranges, [&controls, &it.1]));
+        // On a kink the way down may lead far away; so it does where a limit is kept, of which the
+        // Hamiltonian knows nothing.
+        let is_near = |it: &[f64]| is_limited || !is_far(&ranges, [&controls, it]);
+        let near = value(&controls).filter(|it| is_near(&it.1));
         let near = near.map_or(here, |it| it.0.min(here));
         let others = samples(&ranges, &controls).into_iter().chain([controls]);
         let least = others.filter_map(|it| Some(value(&it)?.0)).min_by(f64::total_cmp)?;

@@ -331,6 +331,21 @@ impl Solution {
     }
 }
 
+/// The derivatives of the Lagrangian by all parameters.
+fn slopes(
+    model: &fdcc_compiler::Model,
+    chain: &Chain,
+    outcome: &ChainOutcome,
+) -> Result<Vec<f64>, Vec<Diagnostic>> {
+    if !model.phases.is_empty() {
+        let by = compile_chain_by_parameters(model)?;
+        return Ok(by_parameters_of_chain(chain, outcome, &by));
+    }
+    let by = compile_by_parameters(model)?;
+    let Outcome { solution, trajectory, .. } = &outcome.phases[0];
+    Ok(by_parameters(&chain.phases[0], solution, &trajectory.parameters, &by))
+}
+
 /// The derivatives of an optimum, by its multipliers; NaN of what depends on which of several sets
 /// of multipliers these are.
 fn by_multipliers(
@@ -338,18 +353,9 @@ fn by_multipliers(
     chain: &Chain,
     outcome: &ChainOutcome,
 ) -> Result<Vec<f64>, Vec<Diagnostic>> {
-    let slopes: Box<dyn Fn(&ChainOutcome) -> Vec<f64>> = if model.phases.is_empty() {
-        let by = compile_by_parameters(model)?;
-        Box::new(move |it| {
-            let Outcome { solution, trajectory, .. } = &it.phases[0];
-            by_parameters(&chain.phases[0], solution, &trajectory.parameters, &by)
-        })
-    } else {
-        let by = compile_chain_by_parameters(model)?;
-        Box::new(move |it| by_parameters_of_chain(chain, it, &by))
-    };
-    let mut found = slopes(outcome);
-    let others = with_other_multipliers(chain, outcome).map(|other| slopes(&other));
+    let mut found = slopes(model, chain, outcome)?;
+    let other = with_other_multipliers(chain, outcome);
+    let others = other.map(|it| slopes(model, chain, &it)).transpose()?;
     let nothing = NOTHING * outcome.solution.objective.abs();
     let parameters = &chain.phases[0].parameters;
     for ((own, other), it) in found.iter_mut().zip(others.into_iter().flatten()).zip(parameters) {

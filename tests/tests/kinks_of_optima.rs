@@ -305,6 +305,11 @@ fn an_unknown_is_not_kept_where_a_kink_is_met_throughout() {
             "-integral(max(x, 0)) + abs((p - q)*x(end) - 0.25)",
             -0.5,
         ),
+        (
+            "free p in [-1, 1] guess 0  free q in [-1, 1] guess 0.3",
+            "3 - integral(max(x, 0)) + abs((p - q)*x(end) - 0.25)",
+            2.5,
+        ),
         ("free p in [-1, 1] guess 0", "-p*p - p - 0.5*integral(abs(x - 0.3*t))", -2.175),
     ];
     for (unknowns, objective, least) in cases {

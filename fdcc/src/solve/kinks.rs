@@ -14,7 +14,7 @@ use crate::error::Error;
 use crate::model::Model;
 use crate::record::Record;
 use crate::verification::Verification;
-use fdcc_compiler::{Kinks, is_kink};
+use fdcc_compiler::{Kinks, Mode, is_kink};
 use fdcc_runtime::nlp::Status;
 
 /// The answer in the words of the model with its kinks; nothing where it is to be solved as it is.
@@ -135,7 +135,15 @@ fn located(own: &Compiled, first: &Solution, options: &Options) -> Result<Option
     found.outcome.solution.global = is_convex;
     let rise = own.problem.sense * (found.objective() - first.objective());
     let is_worse = rise > WORSE * size_of_objective(first).max(size_of_objective(&found));
-    Ok(Some(found).filter(|it| it.is_certified() && !is_worse))
+    let is_kept = own.problem.controls.is_empty() && holds_a_surface(&found);
+    Ok(Some(found).filter(|it| it.is_certified() && !is_worse && !is_kept))
+}
+
+/// Whether a surface is held anywhere: without controls nothing but unknowns can do that, and what
+/// they would be worth off it nobody asked.
+fn holds_a_surface(found: &Solution) -> bool {
+    let phases = found.located.iter().flat_map(|it| &it.structure.phases);
+    phases.into_iter().any(|it| it.modes.contains(&Mode::Held))
 }
 
 /// Solves from what was found for other kinks.
